@@ -33,7 +33,7 @@ class Arrangement {
 
   [[nodiscard]] std::size_t corners() const { return mesh_->vertices.size() + made_.size(); }
   [[nodiscard]] Vec3 rounded(std::uint32_t corner) const;  // to the nearest doubles
-  // The same point with exact coordinates, and all of these.
+  // A corner as a point with exact coordinates, and all such points.
   [[nodiscard]] ExactPoints::Number point(std::uint32_t corner);
   [[nodiscard]] ExactPoints& points() { return points_; }
 

@@ -21,7 +21,7 @@ namespace raycone {
 template <class Real>  // double or long double
 [[nodiscard]] std::optional<Factor<Real>> tied_factor(const Vec3& a, const Vec3& b, const Vec3& q);
 
-// The same of any magnitude, each part rounded once.
+// As tied_factor(), but of any magnitude, each part rounded once.
 template <class Real>  // long double or Quad, for their exponents: nothing over- or underflows
 [[nodiscard]] std::optional<Factor<Real>> unscaled_tied_factor(const Vec3& a, const Vec3& b, const Vec3& q);
 

@@ -48,14 +48,14 @@ class ProjectedGridBuilder {
     float upper_x;
   };
   struct EdgeLine;
-  // Of the boxes of triangles, sums.
+  // Sums over the boxes of triangles.
   struct Sizes {
     double triangles = 0, widths = 0, heights = 0, areas = 0;
 
     void add(const Footprint& footprint, const Rectangle& within);
     Sizes& operator+=(const Sizes& other);
   };
-  // Those of a grid from the first column and row to the last ones.
+  // The cells of a grid from the first column and row to the last ones, these included.
   struct Cells {
     std::uint32_t first_column, last_column, first_row, last_row;
     [[nodiscard]] std::uint64_t columns() const { return std::uint64_t{last_column} - first_column + 1; }

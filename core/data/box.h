@@ -8,13 +8,13 @@
 
 namespace raycone {
 
-// Closed.
+// A closed box.
 struct Box {
   Vec3 lower;
   Vec3 upper;
 };
 
-// Of no point: extended by something it is the box of that.
+// The box of no point: extended by something, it is the box of that.
 inline Box empty_box() {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};

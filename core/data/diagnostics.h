@@ -15,7 +15,7 @@ struct Diagnostics {
   std::span<std::uint8_t> on_surface;  // 1 on the surface; the value is that of the perturbed query there
   std::span<double> error_bound;       // rigorous, of |value - w|, turns (docs/method.md, "Error bound"); 0 if closed
 
-  // Of the samples [begin, begin + count).
+  // The diagnostics of the samples [begin, begin + count).
   [[nodiscard]] Diagnostics part(std::size_t begin, std::size_t count) const {
     return {crossings.subspan(begin, count), degenerate.subspan(begin, count), on_surface.subspan(begin, count),
             error_bound.subspan(begin, count)};

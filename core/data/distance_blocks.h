@@ -106,7 +106,7 @@ struct SignedBlocks {
   const DistanceBlocks& distances;
   std::span<const std::uint8_t> inside;  // 1 or 0, of each of distances.samples(), x fastest, then y, then z
 
-  // Those of the samples of a row from `sample` on.
+  // `inside` of the samples of a row from `sample` on.
   [[nodiscard]] std::span<const std::uint8_t> inside_from(const std::array<std::int64_t, 3>& sample) const {
     const LatticeBlock& all = distances.samples();
     const auto behind = [&](std::size_t axis) { return sample[axis] - all.first[axis]; };

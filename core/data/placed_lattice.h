@@ -16,7 +16,7 @@ namespace raycone {
 // double. Along the world's axes that is what Lattice says.
 struct PlacedLattice {
   PlacedLattice() = default;
-  // That lattice.
+  // A lattice along the axes of the world.
   PlacedLattice(const Lattice& lattice);
   PlacedLattice(const Vec3& at, const std::array<Vec3, 3>& index_steps, const std::array<std::int64_t, 3>& first,
                 const std::array<std::int64_t, 3>& count);
@@ -28,7 +28,7 @@ struct PlacedLattice {
   std::array<Vec3, 3> steps;  // world units per index step
 
   [[nodiscard]] Vec3 position(std::int64_t i, std::int64_t j, std::int64_t k) const;
-  // Of sample `number` of a block, counted i fastest.
+  // The position of sample `number` of a block, counted i fastest.
   [[nodiscard]] Vec3 position(const LatticeBlock& block, std::size_t number) const;
 
   // Whether each axis is that of the world, in its direction.

@@ -36,7 +36,7 @@ struct alignas(64) TrianglePack {
     const Columns& at = corners[corner];
     return {at[0][slot], at[1][slot], at[2][slot]};
   }
-  // The same numbers, put together again.
+  // The triangle of a slot, prepared as it was for the columns.
   [[nodiscard]] TriangleDistance triangle(std::size_t slot) const {
     return {corner(0, slot), corner(1, slot), corner(2, slot)};
   }

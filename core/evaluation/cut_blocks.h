@@ -31,7 +31,7 @@ class CutBlocks {
   // All are in one scale. `rows` must outlive this, as must `caps`; `cones` are bounded but towards lower x.
   CutBlocks(const LatticeRows& rows, std::span<const FlatPiece> caps, std::vector<FlatPiece> cones);
 
-  // Of the largest blocks, which together are the lattice.
+  // How many largest blocks there are, which together are the lattice.
   [[nodiscard]] std::size_t size() const { return boxes_.size(); }
   // Its pieces are those of a whole column of blocks along x.
   [[nodiscard]] CutBlock operator[](std::size_t n) const;

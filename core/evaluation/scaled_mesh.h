@@ -77,7 +77,7 @@ class ScaledMesh {
   [[nodiscard]] const RayCaster& rays() const;
   [[nodiscard]] const ProjectedGrid& grid() const;
   [[nodiscard]] const SlabOrder& slab_order(int axis) const;  // 1 or 2
-  // Of an open mesh; none where values depend on no crossings.
+  // The caps of an open mesh; none where values depend on no crossings.
   [[nodiscard]] const Caps& caps() const;
   // How winding numbers change from place to place, beside the integers where rays begin or cease to cross triangles of
   // the mesh, less those of the caps. Only in scale, and where values depend on crossings.
@@ -140,11 +140,11 @@ class ScaledMesh {
   // sample. `of_closed`, where who calls knows them: crossings less those of caps().
   void set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
                   Settling settling = Settling::kDone, std::span<const std::int64_t> of_closed = {}) const;
-  // The same by the direct sum.
+  // As set_values(), by the direct sum. Precondition: the mesh is open.
   void set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
                          Settling settling = Settling::kDone) const;
 
-  // The same for points of one group of blocks_of_points().
+  // As set_values(), for points of one group of blocks_of_points().
   void set_values(PointBlocks::Sums& sums, SampleTile& samples, std::span<const std::int64_t> crossings,
                   std::span<double> values, Settling settling) const;
 

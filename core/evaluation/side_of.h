@@ -57,7 +57,7 @@ class SideSetter {
     sides_[index] = holds(mesh_rule_.rule(), w) ? 1 : 0;
   }
 
-  // Of those that wait.
+  // Sets the sides of those that wait.
   void finish();
 
  private:

@@ -16,7 +16,7 @@
 namespace raycone {
 namespace {
 
-// Of a mesh without triangles. Whether it is one.
+// Sets what a mesh without triangles has, 0. Returns whether it is one.
 bool set_to_zero_if_empty(const TriangleMesh& mesh, std::span<double> values, std::atomic<std::uint64_t>* done,
                           const Diagnostics* diagnostics) {
   if (!mesh.triangles.empty()) return false;

@@ -42,7 +42,7 @@ class ExactPoints {
 
   // 1 where a, b, c turn left, seen along an axis; -1 where they turn right, 0 where they are on a line.
   [[nodiscard]] int turn(int axis, Number a, Number b, Number c) const;
-  // The same of two vertices of the mesh.
+  // The same where a and b are vertices of the mesh.
   [[nodiscard]] int turn(int axis, const Vec3& a, const Vec3& b, Number c) const;
   // An axis along which the triangle is seen, not from the side: of these the one that sees most of it, as far as
   // doubles tell. Precondition: it has an area.

@@ -45,7 +45,7 @@ class FarField final : public BoundaryTerm {
   // The same, `whole` being the crossings of the mesh less those of the caps; of sources that are caps.
   void winding_numbers_of_closed(SampleTile& samples, std::span<const std::int64_t> whole, std::span<double> w) const;
   [[nodiscard]] double doubt() const override { return doubt_; }
-  // That of one with so many sources at most.
+  // doubt() of a far field with so many sources at most.
   [[nodiscard]] static double doubt(double tolerance, double sources);
   [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const override {
     return enclosed_error(boundary_, q, w, crossings);

@@ -51,7 +51,7 @@ struct SampleBlock {
 // What is done with one lattice. Thread-safe once made. Blocks and axes must outlive it.
 class LatticeBlocksWalk {
  public:
-  // Of the tolerance, for multipoles at samples.
+  // The part of the tolerance that is for multipoles at samples.
   static constexpr double kSampleShare = 0.1;
 
   LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeAxes& axes, AxesOf axes_of = AxesOf::kSamples);

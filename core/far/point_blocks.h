@@ -34,7 +34,7 @@ class PointBlocks {
 
   // Cells [0, groups()) of neighbouring points: such a group shares a list of what is near.
   [[nodiscard]] std::uint32_t groups() const { return counts_[0] * counts_[1] * counts_[2]; }
-  // That of a point; none outside of the box.
+  // The group of a point; none outside of the box.
   [[nodiscard]] std::optional<std::uint32_t> group_of(const Vec3& q) const;
 
   // How long the sum at a point takes, about; in units of a triangle's solid angle there.

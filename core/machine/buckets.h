@@ -45,7 +45,7 @@ class Buckets {
   [[nodiscard]] std::span<Item> operator[](std::size_t bucket) const {
     return {items_.get() + begin_[bucket], begin_[bucket + 1] - begin_[bucket]};
   }
-  // Of all buckets, one after the other.
+  // The items of all buckets, one bucket after the other.
   [[nodiscard]] std::span<Item> all() const { return {items_.get(), begin_.back()}; }
 
  private:

@@ -10,7 +10,7 @@
 
 namespace raycone {
 
-// Of each component its triangles.
+// The triangles of each component.
 [[nodiscard]] std::vector<std::vector<Triangle>> triangles_of(const Components& components, const TriangleMesh& mesh);
 
 // Leaves the components that are `kept`, in their order, and their vertices.

@@ -94,7 +94,7 @@ class CellPolygons {
     unsigned direction;      // of the edge
     const EdgePoint* piece;  // of the next side, where that is between two points of a face
   };
-  // Of the loop, between two points of faces.
+  // A part of the loop, between two points of faces.
   struct Run {
     const EdgePoint* plane = nullptr;
     std::array<std::uint8_t, PlanePolygon::kMostCorners> corners{};  // of the loop

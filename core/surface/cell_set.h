@@ -39,7 +39,7 @@ class CellSet {
 
   [[nodiscard]] Cell cell_of(const Vec3& p) const { return {cell_at(p, 0), cell_at(p, 1), cell_at(p, 2)}; }
 
-  // Of the box of a triangle with corners in these cells.
+  // The cells of the box of a triangle with corners in these ones.
   [[nodiscard]] static Range range_of(const Cell& a, const Cell& b, const Cell& c) {
     Range range;
     for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -47,7 +47,7 @@ class FacePoints {
   FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions);
 
   [[nodiscard]] PointsOfFaces kind() const { return kind_; }
-  // Of each point.
+  // The face of each point.
   [[nodiscard]] const std::vector<std::uint64_t>& faces() const { return faces_; }
   [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
 

@@ -19,7 +19,7 @@ namespace raycone {
 
 inline constexpr std::uint32_t kNoFace = UINT32_MAX;
 
-// Of a face of a gap, in its direction, and the face beyond.
+// A side of a face of a gap, in its direction, and the face beyond.
 struct GapSide {
   std::uint32_t from, to, face, beyond;
 };

@@ -57,7 +57,7 @@ class PlaneMerger {
   std::shared_ptr<SecondPass> second_;  // of the last call, likewise
 };
 
-// The same, once.
+// The same by a merger that is used once.
 [[nodiscard]] MergedFaces merge_planes(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice,
                                        const std::vector<bool>& kept, const MergeLimits& limits);
 

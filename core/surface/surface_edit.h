@@ -21,7 +21,7 @@ struct SurfaceEdit {
   // Numbers of faces, each once: all that have other corners, or a corner that is elsewhere. They may be the same.
   std::vector<std::uint32_t> faces;
   std::vector<Corners> corners;  // of each of them
-  // Of vertices, each once, that are elsewhere.
+  // Numbers of vertices, each once, that are elsewhere; and where they were and are.
   std::vector<std::uint32_t> vertices;
   std::vector<Place> places;
 

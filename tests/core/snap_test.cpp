@@ -9,6 +9,7 @@
 #include "core/mesh/components.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/surface/certificate.h"
+#include "tests/support/border_sources.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -22,6 +23,7 @@ RuleBorder snapped(const TriangleMesh& mesh) {
   snap(border, kNear);
   EXPECT_TRUE(exterior_edges(border.mesh).empty());
   EXPECT_EQ(border.sources.size(), border.mesh.triangles.size());
+  EXPECT_LE(test::farthest_from_source(border, mesh), 4 * kNear);
   return border;
 }
 

@@ -58,6 +58,14 @@ TEST(Scale, OfNothingIsOne) {
 TEST(Scale, LosesNoBit) {
   // 2^1000 beside 2^-1000 cannot be brought to 1 without losing the small one's bits.
   EXPECT_EQ(unit_scale({{{0x1p1000, 0, 0}, {0x1.8p-1000, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}).exponent(), 0);
+  // Nor can a number next to 2^-60; 2^-60 itself can.
+  for (int axis = 0; axis < 3; ++axis) {
+    TriangleMesh mesh{{{0x1p1000, 0, 0}, {0, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+    mesh.vertices[1][axis] = 0x1.0000000000001p-60;
+    EXPECT_EQ(unit_scale(mesh).exponent(), 0) << axis;
+    mesh.vertices[1][axis] = 0x1p-60;
+    EXPECT_EQ(unit_scale(mesh).exponent(), -1001) << axis;
+  }
   // That holds for used vertices only.
   EXPECT_EQ(unit_scale(with_unused({{0x1p1000, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {0x1.8p-1000, 0, 0})).exponent(), -1001);
 }

@@ -97,9 +97,10 @@ TEST(RuleBlocks, HoldOnLatticesThatAreFullOfTies) {
   test::Random random(4);
   for (int i = 0; i < 4; ++i) {
     TriangleMesh cells = test::random_cells(random, 4);
-    cells.triangles.resize(cells.triangles.size() - 9);
-    EXPECT_NE(certified(weld(cells, {}), integers(-4, 41, 0.125)), kWrong);
-    EXPECT_NE(certified(weld(test::lattice_soup(random, 30, 4), {}), integers(-6, 33, 0.25)), kWrong);
+    std::size_t n = 0;  // holes enough: of few edges values tell, not certificates
+    std::erase_if(cells.triangles, [&](const Triangle&) { return n++ % 20 == 0; });
+    EXPECT_GT(certified(weld(cells, {}), integers(-4, 41, 0.125)), 100'000);
+    EXPECT_GT(certified(weld(test::lattice_soup(random, 30, 4), {}), integers(-6, 33, 0.25)), 100'000);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "core/boundary/boundary_term.h"
 #include "core/boundary/solid_angles.h"
 #include "core/machine/floating_point.h"
+#include "tests/support/differences.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -105,7 +106,7 @@ TEST(SharedCorners, RoughFactorsAreOffByNoMoreThanTheyMayBe) {
     const std::vector<double> full = sums_of(triangles, false, tile, TileShape::kScattered, SimdLevel::kBest);
     for (const SimdLevel level : kLevels) {
       const std::vector<double> rough = sums_of(triangles, false, tile, TileShape::kScattered, level, Care::kRough);
-      for (std::size_t i = 0; i < full.size(); ++i) largest = std::max(largest, std::abs(full[i] - rough[i]));
+      largest = std::max(largest, test::largest_difference(full, rough));
     }
   }
   EXPECT_LE(largest, most);

@@ -928,6 +928,35 @@ TEST(FaceSources, AreSettledWhereTheyCannotBe) {
   }
 }
 
+// The top of a box that has none: one of its faces closes the hole, and so does the one beside it.
+TEST(FaceSources, AreNoneBesideAndInLineWithAHole) {
+  const DefaultFloatingPoint guard;
+  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
+  TriangleMesh input{box.vertices, {}};
+  SurfaceMesh surface{box, {}};
+  std::vector<std::size_t> top;
+  for (std::size_t face = 0; face < box.triangles.size(); ++face) {
+    const Triangle& t = box.triangles[face];
+    if (std::ranges::all_of(t, [&](std::uint32_t v) { return box.vertices[v].z == 1.0; })) {
+      top.push_back(face);
+      surface.sources.push_back(0);
+    } else {
+      surface.sources.push_back(static_cast<std::int32_t>(input.triangles.size()));
+      input.triangles.push_back(t);
+    }
+  }
+  ASSERT_EQ(top.size(), 2U);
+  const TriangleNormals normals(input);
+  const DistanceEvaluator distance(input);
+  const SourceSettler settler(input, normals, distance, 0.1);
+  SurfaceMesh expected = surface, without_hole = surface;
+  surface.sources[top[0]] = expected.sources[top[0]] = expected.sources[top[1]] = kHole;
+  settler.settle(surface);
+  EXPECT_EQ(surface.sources, expected.sources);
+  settler.settle(without_hole);
+  EXPECT_EQ(std::ranges::count(without_hole.sources, kHole), 0);
+}
+
 TEST(Surface, KeepsItsShapeWhereFacesAreMerged) {
   const TriangleMesh mesh = rotated(wedge());
   const auto [fine, lattice] = surface_of(mesh, 16, {.rule = {}, .merge_planes = false});

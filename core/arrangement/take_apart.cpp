@@ -198,8 +198,8 @@ class Apart {
       if (fans_of_vertex.size() > kMostCones) return false;
       std::vector<FanCone> cones;
       for (const auto& [root, faces] : fans_of_vertex) cones.emplace_back(border_, vertex, faces);
-      const bool are_there = options_.way ? add_moves_along(*options_.way, vertex, cones, moves)
-                                          : add_moves_inside(vertex, cones, moves, cuts);
+      const bool are_there = options_.against_perturbation ? add_moves_against(vertex, cones, moves)
+                                                           : add_moves_inside(vertex, cones, moves, cuts);
       if (!are_there) return false;
     }
     if (cuts.size() > kMostCuts) return false;
@@ -216,11 +216,35 @@ class Apart {
     return others;
   }
 
+  // Against the perturbation: a small number of times as far along y as along x, and along z as along y, as faces are
+  // hardly ever nearer to level without being so.
+  static Vec3 way_against(double along_y, double along_z) {
+    constexpr double kMuchLess = 0x1p-5;
+    const Vec3 way{-1.0, -kMuchLess * along_y, -kMuchLess * kMuchLess * along_y * along_z};
+    return (1.0 / norm(way)) * way;
+  }
+
+  // The way of a fan: farther along y, or z, where that alone takes it off all others and the axis before does not. So
+  // if different fans are ahead at the two ends of an edge, they pass each other between these where no solid is. Not
+  // much farther: one that is more steps ahead stays ahead along all axes.
+  static Vec3 way_of(const std::vector<FanCone>& cones, std::size_t n) {
+    constexpr double kAdverse = 0x1p-6, kLittle = 0x1p-8, kFarther = 1.25;
+    const auto does = [&](const Vec3& way) {
+      for (std::size_t m = 0; m < cones.size(); ++m) {
+        if (m != n && !cones[n].leaves(cones[m], way)) return false;
+      }
+      return true;
+    };
+    const bool x = does({-1.0, kAdverse, kLittle}), y = does({kLittle, -1.0, kAdverse});
+    const bool z = does({kAdverse, kLittle, -1.0});
+    return way_against(y && !x ? kFarther : 1.0, z && !y ? kFarther : 1.0);
+  }
+
   // The first fan stays, and each other one goes farther than those before it, away from them. Of two that may leave
   // each other, the one that is ahead at the other ends of their edges is ahead, or the one whose faces are.
-  bool add_moves_along(const Vec3& way, std::uint32_t vertex, const std::vector<FanCone>& cones,
-                       std::vector<Move>& moves) {
+  bool add_moves_against(std::uint32_t vertex, const std::vector<FanCone>& cones, std::vector<Move>& moves) {
     const std::size_t count = cones.size();
+    const Vec3 way = way_against(1.0, 1.0);
     std::vector<std::vector<bool>> leaves(count, std::vector<bool>(count, false));
     std::vector<std::pair<int, std::size_t>> order;  // how many each is ahead of, and which it is
     for (std::size_t n = 0; n < count; ++n) {
@@ -241,7 +265,7 @@ class Apart {
         if (!leaves[order[i].second][order[j].second]) return false;
       }
       for (const std::uint32_t face : cone.faces()) steps_[{face, vertex}] = static_cast<int>(i);
-      const Vec3 step = static_cast<double>(i) * options_.distance * way;
+      const Vec3 step = static_cast<double>(i) * options_.distance * way_of(cones, order[i].second);
       if (i > 0) moves.push_back({vertex, cone.faces(), border_.vertices[vertex] + step});
     }
     return true;

@@ -2,27 +2,25 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
-#include "core/data/vec3.h"
 
 namespace raycone {
 
 struct ApartOptions {
   double distance = 0.0;          // by which vertices move, world units
   bool single_precision = false;  // new vertices are rounded to float
-  // Where given, a direction of length 1 that all move along, those of several fans farther and farther: what lies on
-  // faces is on one side of all of them afterwards.
-  std::optional<Vec3> way{};
+  // All move against the perturbation, by far less along y than along x, and along z than along y, those of several
+  // fans farther and farther: what lies on faces is on the side of all of them that it is on as perturbed.
+  bool against_perturbation = false;
 };
 
 // Makes a 2-manifold of the border of a solid: where it touches itself in a vertex or along an edge, each part of the
 // solid gets a vertex of its own, which all of them but one have moved into their insides by the distance, or out of
-// them where that is the way to go, or along the way given. Where there is no way into a part, its corner is cut off,
-// by 2^-12 of each edge. Faces along an edge belong together where the solid is between them. An edge along which that
-// leaves two parts the same two ends is halved. `sources`: of each triangle, and so of its halves. False, and the
+// them where that is the way to go, or against the perturbation. Where there is no way into a part, its corner is cut
+// off, by 2^-12 of each edge. Faces along an edge belong together where the solid is between them. An edge along which
+// that leaves two parts the same two ends is halved. `sources`: of each triangle, and so of its halves. False, and the
 // border is left half done, where it has no two sides, as where of more than two faces at an edge one lies on another,
 // or two parts cannot be moved, nor be cut off. Whether what is moved meets nothing must be looked at after it.
 // Precondition: every edge has as many faces in either direction. Needs DefaultFloatingPoint.

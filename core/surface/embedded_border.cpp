@@ -65,12 +65,10 @@ bool has_all_nodes_right(const SurfaceMesh& surface, const NodeSet& inside) {
 // With nodes on their sides, if that can be had. A node on a face counts as moved by less than any distance, along x by
 // more than along y, and along y by more than along z. If faces move the other way it stays on its side of them.
 std::optional<SurfaceMesh> taken_apart_beside(const NodeSet& inside, const RuleBorder& border, ApartOptions options) {
-  constexpr double kMuchMore = 0x1p5;  // as faces are hardly ever nearer to level without being so
   std::optional<SurfaceMesh> surface = taken_apart(border, options);
   const bool has_moved = surface && surface->mesh.vertices.size() != border.mesh.vertices.size();
   if (surface && (!has_moved || has_all_nodes_right(*surface, inside))) return surface;
-  const Vec3 way{-1.0, -1.0 / kMuchMore, -1.0 / (kMuchMore * kMuchMore)};
-  options.way = (1.0 / norm(way)) * way;
+  options.against_perturbation = true;
   std::optional<SurfaceMesh> other = taken_apart(border, options);
   return other && (!surface || has_all_nodes_right(*other, inside)) ? other : surface;
 }

@@ -160,9 +160,8 @@ void check_gradient(const std::string& name, const DrawnSample& sample, const Tr
   constexpr double kRelative = 1e-11, kMost = std::numeric_limits<double>::max();
   const QuadVec3& g = truth.gradient.value;
   const std::array expected{g.x, g.y, g.z};
-  const double tolerance =
-      std::min(kMost, kRelative * static_cast<double>(std::min(truth.gradient.magnitude, Quad(kMost)))) +
-      std::numeric_limits<double>::denorm_min();
+  const double tolerance = static_cast<double>(std::min(kRelative * truth.gradient.magnitude, Quad(kMost))) +
+                           std::numeric_limits<double>::denorm_min();
   for (std::size_t axis = 0; axis < expected.size(); ++axis) {
     check_number(name, sample, {kGradientNames[axis], (*sample.gradient)[static_cast<int>(axis)]},
                  std::clamp(expected[axis], Quad(-kMost), Quad(kMost)), tolerance, largest);

@@ -12,21 +12,25 @@ const Quad kFullSolidAngle = 16 * atanq(1);  // 4 pi
 // The integral of dl x r / |r|^3 over the side: (1 / d^2) (d x a) times the difference of the cosines at its ends, d
 // being the distance of q from its line. Where q is beyond an end the cosines are about the same; then their difference
 // is that of the sines' squares, d^2 (1 / |a|^2 - 1 / |b|^2), over the cosines' sum.
+Quad cosines_by_square(const QuadVec3& a, const QuadVec3& b, const QuadVec3& step, const Quad& square) {
+  const Quad aa = dot(a, a), bb = dot(b, b), la = sqrtq(aa), lb = sqrtq(bb);
+  // From there on what tells the ends apart may be lost, and |r| is that of the middle, but for 2^-80 of it.
+  constexpr double kFar = 0x1p80;
+  if (aa > kFar * dot(step, step)) return 8 / ((la + lb) * (la + lb) * (la + lb));
+  const Quad at_a = dot(a, step), at_b = dot(b, step), cos_a = at_a / la, cos_b = at_b / lb;
+  const bool is_beyond = (at_a > 0) == (at_b > 0);
+  return is_beyond ? (at_a + at_b) / (aa * bb * (cos_a + cos_b)) : (cos_b - cos_a) / square;
+}
+
 void add_side(const Vec3& from, const Vec3& to, const Vec3& q, DirectGradient& sum) {
   const bool swapped = lexicographic_order(to, from) < 0;
   const Vec3& first = swapped ? to : from;
   const Vec3& second = swapped ? from : to;
   const QuadVec3 a = quad_difference(first, q), b = quad_difference(second, q), step = quad_difference(second, first);
-  const Quad aa = dot(a, a), bb = dot(b, b);
   const QuadVec3 normal = cross_of_differences(first, second, q);
   const Quad square = dot(normal, normal);
   if (square == 0) return;
-  const Quad at_a = dot(a, step), at_b = dot(b, step);
-  if (at_a == 0 && at_b == 0) return;  // so far away that both ends are in one place
-  const Quad cos_a = at_a / sqrtq(aa), cos_b = at_b / sqrtq(bb);
-  const bool is_beyond = (at_a > 0) == (at_b > 0);
-  const Quad cosines_by_square = is_beyond ? (at_a + at_b) / (aa * bb * (cos_a + cos_b)) : (cos_b - cos_a) / square;
-  const Quad factor = (swapped ? -1 : 1) * cosines_by_square / kFullSolidAngle;
+  const Quad factor = (swapped ? -1 : 1) * cosines_by_square(a, b, step, square) / kFullSolidAngle;
   sum.value.x += factor * normal.x;
   sum.value.y += factor * normal.y;
   sum.value.z += factor * normal.z;

@@ -220,19 +220,34 @@ TEST(Gradient, OfATinyMeshFarAwayIsNothing) {
 
 // From far away the ends of an edge are in one place, even in 113 bits.
 TEST(Gradient, FarAwayIsNothingAndNotNothingOverNothing) {
-  const TriangleMesh mesh = weld(test::open_box(), {});
-  for (const double far : {1e20, 1e34, 1e35, 1e60, 1e150, 1e300}) {
-    for (const Vec3& direction : {Vec3{1, 1, 1}, Vec3{-1, 1, 0}, Vec3{0, 0, 1}, Vec3{0.3, -0.2, 0.7}}) {
-      const Vec3 q = far * direction;
-      const Vec3 gradient = gradients_of(mesh, {q}).front();
-      const DirectGradient expected = direct_gradient(mesh, q);
-      for (int axis = 0; axis < 3; ++axis) {
-        const auto component_of = static_cast<double>(component(expected.value, axis));
-        EXPECT_TRUE(std::isfinite(component_of)) << far;
-        EXPECT_NEAR(gradient[axis], component_of, 1e-12 * static_cast<double>(expected.magnitude)) << far;
+  // The side from the second to the third corner of a triangle is across some of the directions.
+  const TriangleMesh triangle{{{0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}}, {{{0, 1, 2}}}};
+  for (const TriangleMesh& mesh : {weld(test::open_box(), {}), weld(triangle, {})}) {
+    for (const double far : {1e20, 1e25, 1e30, 1e34, 1e35, 1e60, 1e150, 1e300}) {
+      for (const Vec3& direction : {Vec3{1, 1, 1}, Vec3{-1, 1, 0}, Vec3{0, 0, 1}, Vec3{0.3, -0.2, 0.7}}) {
+        const Vec3 q = far * direction;
+        const Vec3 gradient = gradients_of(mesh, {q}).front();
+        const DirectGradient expected = direct_gradient(mesh, q);
+        for (int axis = 0; axis < 3; ++axis) {
+          const auto component_of = static_cast<double>(component(expected.value, axis));
+          EXPECT_TRUE(std::isfinite(component_of)) << far;
+          EXPECT_NEAR(gradient[axis], component_of, 1e-12 * static_cast<double>(expected.magnitude)) << far;
+        }
       }
     }
   }
+}
+
+// Where parts are beyond doubles it is their sizes that rounding is judged by.
+TEST(Gradient, OfATriangleOfTheLeastNumbersIsThatOfTheDefinition) {
+  const double least = 5e-324;
+  const TriangleMesh mesh = weld({{{0, 0, 0}, {least, 0, 0}, {0, least, 0}}, {{{0, 1, 2}}}}, {});
+  const Vec3 q{1e-320, 1e-320, 1e-320};
+  const Vec3 gradient = gradients_of(mesh, {q}).front();
+  const DirectGradient expected = direct_gradient(mesh, q);
+  EXPECT_GT(expected.magnitude, Quad(1e308));
+  const Quad off = component(expected.value, 2) - Quad(gradient.z);
+  EXPECT_LT((off < 0 ? -off : off) / expected.magnitude, Quad(1e-12));
 }
 
 TEST(Gradient, ScalesWithTheMeshAtAllMagnitudes) {

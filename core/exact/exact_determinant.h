@@ -71,12 +71,14 @@ inline void add_product(ExactSum& sum, const Difference& x, const Difference& y,
 [[nodiscard]] inline double rounded_determinant(const Difference& a, const Difference& b, const Difference& c,
                                                 const Difference& d) {
   const auto exactly = [](const Difference& x) { return exact_sum(x.plus, x.minus); };
-  const DoubleDouble ad = exactly(a) * exactly(d), bc = exactly(b) * exactly(c), sum = ad - bc;
+  const DoubleDouble of_a = exactly(a), of_b = exactly(b), of_c = exactly(c), of_d = exactly(d);
+  const DoubleDouble ad = of_a * of_d, bc = of_b * of_c, sum = ad - bc;
   const double terms = std::abs(ad.high) + std::abs(bc.high);
   const double error = 0x1p-97 * terms;  // eight times what is lost at most
   constexpr double kLeast = 0x1p-850;    // nothing that matters underflows
   const bool is_sure = sum.high + (sum.low + error) == sum.high && sum.high + (sum.low - error) == sum.high;
-  const bool in_range = terms > kLeast || terms == 0.0;
+  const bool has_no_terms = (of_a.high == 0.0 || of_d.high == 0.0) && (of_b.high == 0.0 || of_c.high == 0.0);
+  const bool in_range = terms > kLeast || has_no_terms;
   return (is_sure && in_range ? sum.high : static_cast<double>(determinant(a, b, c, d))) + 0.0;
 }
 

@@ -1,5 +1,5 @@
-// Doubles as integers of any size (GMP): for definitions that verification rests on, for the sign of a volume and for
-// points in which faces meet. Only direct_sum.cpp, direct_distance.cpp, volume_sign.cpp and exact_points.cpp include this.
+// Doubles as integers of any size (GMP): for definitions that verification rests on, for the sign of a volume, for
+// places at planes and for points in which faces meet. Only the .cpp files of these include this.
 #pragma once
 
 #include <gmpxx.h>

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "core/exact/exact_determinant.h"
+#include "core/exact/place_at_plane.h"
 #include "core/exact/predicates.h"
 #include "core/mesh/triangle_runs.h"
 
@@ -62,13 +63,17 @@ double place_between(Long of_first, Long of_second) {
 // `terms`: the magnitudes of the products that the distances, times the normal's length, have, added.
 double place_between(Long of_p, Long of_q, double terms, const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                      const Vec3& c) {
-  constexpr Long kSure = 0x1p-10;  // ten roundings of 2^-64 are below 2^-50 of the sum then
-  if (of_p + of_q > kSure * Long{terms}) return place_between(of_p, of_q);
+  constexpr Long kUnderflow = 0x1p-900;  // far more than `terms` and the distances lose
+  // Ten roundings of 2^-64, or of 2^-113, are below 2^-50 of the sum then.
+  constexpr Long kSure = 0x1p-10;
+  constexpr double kWideSure = 0x1p-58;
+  const Long all_terms = terms + kUnderflow;
+  if (of_p + of_q > kSure * all_terms) return place_between(of_p, of_q);
   const QuadVec3 normal = cross_of_differences(b, c, a);
   const Quad from_p = absolute(dot(normal, quad_difference(p, a))),
              from_q = absolute(dot(normal, quad_difference(q, a)));
   const Quad all = from_p + from_q;
-  return all > 0 ? static_cast<double>(from_p / all) : 0.5;
+  return all > kWideSure * Quad(all_terms) ? static_cast<double>(from_p / all) : place_at_plane(p, q, a, b, c);
 }
 
 double distance_terms(const Vec3& normal_terms, const Vec3& p, const Vec3& q, const Vec3& a) {

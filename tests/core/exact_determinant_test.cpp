@@ -68,6 +68,8 @@ TEST_F(ExactDeterminant, IsRightAtAllMagnitudes) {
   const double most = std::numeric_limits<double>::max();
   expect_equal(difference(most, -most), difference(1, 0), difference(0, 1), difference(most, 0));
   expect_equal(difference(0, 0), difference(-1, 0), difference(1, 0), difference(0, 0));
+  // Products that are 0 in doubles, and half the least double each.
+  expect_equal(difference(0x1p-537, 0), difference(0x1p-538, 0), difference(-0x1p-537, 0), difference(0x1p-538, 0));
 }
 
 }  // namespace

@@ -1,0 +1,28 @@
+#include "core/exact/place_at_plane.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/exact/exact_integers.h"
+
+namespace raycone {
+
+double place_at_plane(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  int exponent = 0;
+  for (const Vec3& point : {p, q, a, b, c}) {
+    for (int axis = 0; axis < 3; ++axis) exponent = std::max(exponent, exact::exponent_to_integer(point[axis]));
+  }
+  const auto integers = [&](const Vec3& v) {
+    return exact::IntegerVec3{exact::integer(v.x, exponent), exact::integer(v.y, exponent),
+                              exact::integer(v.z, exponent)};
+  };
+  const exact::IntegerVec3 origin = integers(a);
+  const auto from_a = [&](const Vec3& v) { return exact::minus(integers(v), origin); };
+  const exact::IntegerVec3 normal = exact::cross(from_a(b), from_a(c));
+  const mpz_class of_p = abs(exact::dot(normal, from_a(p))), of_q = abs(exact::dot(normal, from_a(q)));
+  constexpr int kBits = 64;
+  const mpz_class place = (of_p << kBits) / (of_p + of_q);
+  return std::ldexp(place.get_d(), -kBits);
+}
+
+}  // namespace raycone

@@ -127,14 +127,14 @@ std::optional<double> StarChange::distance(double most) const {
   return gap < most ? std::optional(gap) : std::nullopt;
 }
 
-// Of what is seen, and of heights: sums of three coordinates, weighted by parts of a face's area, each of which is off
-// by what turns round in that area. The same for all stars of a size whose faces are not thin, so that it does not
+// Of what is seen, and of heights: sums of three coordinates, weighted by parts of a face's area: these and the area
+// are off by what turns round. The same for all stars of a size whose faces are not thin, so that it does not
 // choose between pulls.
 double StarChange::rounding() const {
   constexpr double kOfMost = 0x1p-42;
   double least = size_ * size_;
   for (const Corners3& c : seen_after_) least = std::min(least, turn(c[0], c[1], c[2]));
-  return 0x1p-45 * size_ + size_ * std::max(kOfMost, 3 * kTurnRounds * size_ * size_ / least);
+  return 0x1p-45 * size_ + size_ * std::max(kOfMost, 4 * kTurnRounds * size_ * size_ / least);
 }
 
 bool StarChange::is_between(const Vec3& node) const {

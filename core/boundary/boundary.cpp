@@ -16,7 +16,6 @@ namespace {
 bool projects_to_a_point(const Vec3& a, const Vec3& b) { return a.y == b.y && a.z == b.z; }
 
 constexpr long double kWideRounding = std::numeric_limits<long double>::epsilon() / 2;
-constexpr Quad kQuadRounding = 0x1p-113;
 
 // Whether w, which differs from `value` by at most 1/8 and from -(turns of the cone) by an integer, is above
 // `critical` (1), below (-1), or cannot be told from it (0). `rounding`: u of Real.

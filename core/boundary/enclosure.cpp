@@ -136,7 +136,6 @@ TurnsWithin<Wide> enclose_group(const ChainGroup& group, const Vec3& q) {
 // ---- In 113 bits ----------------------------------------------------------------------------------------------------
 
 const Quad kTurn = 8 * atanq(1);
-constexpr Quad kQuadRounding = 0x1p-113;
 
 // As WideProduct, with a coarser bound.
 struct QuadProduct {

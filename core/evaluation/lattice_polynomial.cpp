@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/evaluation/sums_round.h"
+#include "core/machine/simd.h"
 
 namespace raycone {
 namespace {
@@ -31,7 +32,7 @@ std::vector<std::size_t> chebyshev_nodes(std::size_t samples, std::size_t count)
 
 AxisNodes::AxisNodes(std::span<const double> coordinates, std::size_t degree)
     : nodes_(chebyshev_nodes(coordinates.size(), std::min(degree + 1, coordinates.size()))),
-      row_size_((coordinates.size() + 7) / 8 * 8) {
+      row_size_(padded_to_lanes(coordinates.size())) {
   weights_.assign(nodes_.size() * row_size_, 0.0);
   for (std::size_t i = 0; i < coordinates.size(); ++i) {
     double sum = 0.0, product = 1.0;
@@ -133,7 +134,7 @@ void NodeGrid::interpolate(std::span<const double> values, const SampleBox& part
       for (std::size_t i = 0; i < nx; ++i) out.nodes[j * nx + i] += weight * out.layer[n * nx + i];
     }
   }
-  out.width = (part.side(0) + 7) / 8 * 8;
+  out.width = padded_to_lanes(part.side(0));
   out.values.resize(rows * out.width);
   matrices.multiply({out.nodes.data(), nx, 1}, {x.weights(0).data() + (part.begin[0] - begin_[0]), x.row_size()},
                     {out.values.data(), out.width}, rows, nx, out.width);

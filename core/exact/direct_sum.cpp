@@ -15,9 +15,9 @@ const Quad kPi = 4 * atanq(1);
 
 QuadVec3 relative_to(const QuadVec3& q, const Vec3& v) { return {v.x - q.x, v.y - q.y, v.z - q.z}; }
 
-// Real and imaginary part sum ten products of three lengths' magnitude; each has at most twelve roundings of 2^-113
-// (differences, norms, products, sums), in both parts.
-constexpr Quad kRoundings = 2 * 10 * 12 * 0x1p-113;
+// Real and imaginary part sum ten products of three lengths, with 106 roundings in all (differences, norms, products,
+// sums); 240 are paid for.
+constexpr Quad kRoundings = 2 * 10 * 12 * kQuadRounding;
 
 mp_bitcnt_t bits_of(const Corners& corners) {
   std::size_t bits = 1;
@@ -89,7 +89,7 @@ QuadWithin half_solid_angle(const Vec3& va, const Vec3& vb, const Vec3& vc, cons
 }  // namespace
 
 QuadWithin perturbed_direct_sum(const TriangleMesh& mesh, const Vec3& q) {
-  constexpr Quad kSharp = 1e-20, kRounding = 0x1p-113;
+  constexpr Quad kSharp = 1e-20;
   QuadWithin sum{0, 0};
   Quad magnitudes = 0;
   for (const Triangle& t : mesh.triangles) {
@@ -100,7 +100,7 @@ QuadWithin perturbed_direct_sum(const TriangleMesh& mesh, const Vec3& q) {
     sum.error += term.error;
     magnitudes += absolute(term.value);
   }
-  sum.error += static_cast<Quad>(mesh.triangles.size() + 2) * kRounding * magnitudes;  // of the sum itself
+  sum.error += static_cast<Quad>(mesh.triangles.size() + 2) * kQuadRounding * magnitudes;  // of the sum itself
   return {sum.value / (2 * kPi), sum.error / (2 * kPi)};
 }
 

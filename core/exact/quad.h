@@ -6,6 +6,7 @@
 namespace raycone {
 
 using Quad = __float128;
+inline constexpr Quad kQuadRounding = 0x1p-113;  // of one operation, relative
 
 struct QuadVec3 {
   Quad x, y, z;

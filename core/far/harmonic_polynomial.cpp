@@ -6,7 +6,7 @@
 namespace raycone {
 namespace {
 
-constexpr std::size_t kPadded = (kTerms + 7) / 8 * 8;
+constexpr std::size_t kPadded = padded_to_lanes(kTerms);
 using Matrix = std::array<std::array<double, kPadded>, kTerms>;
 
 // Row i: T_i(shift + stretch x) as a sum of T_0(x) to T_i(x).

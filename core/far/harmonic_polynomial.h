@@ -8,6 +8,7 @@
 
 #include "core/data/vec3.h"
 #include "core/far/matrix_kernel.h"
+#include "core/machine/simd.h"
 
 namespace raycone {
 
@@ -28,7 +29,7 @@ class CoefficientRows {
     for (std::size_t k = 0; k < kTerms; ++k) {
       for (std::size_t j = 0; j + k < kTerms; ++j) {
         begin_[k][j] = size_;
-        size_ += (kTerms - j - k + 7) / 8 * 8;
+        size_ += padded_to_lanes(kTerms - j - k);
       }
     }
   }
@@ -65,7 +66,7 @@ class GridValues {
   [[nodiscard]] std::span<const double> evaluate(const Coefficients& polynomial, std::size_t degree, const Cube& cube,
                                                  std::span<const double> xs, std::span<const double> ys,
                                                  std::span<const double> zs);
-  [[nodiscard]] static std::size_t row_size(std::size_t samples) { return (samples + 7) / 8 * 8; }
+  [[nodiscard]] static std::size_t row_size(std::size_t samples) { return padded_to_lanes(samples); }
 
  private:
   MatrixKernel kernel_;

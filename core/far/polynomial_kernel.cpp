@@ -81,7 +81,7 @@ HWY_INLINE void evaluate_groups(const Coefficients& polynomial, std::size_t degr
 
 void evaluate_here(const Coefficients& polynomial, std::size_t degree, const Cube& cube, const SampleTile& samples,
                    Tile& values) {
-  const std::size_t end = (samples.count + 7) / 8 * 8, lanes = hn::Lanes(d);
+  const std::size_t end = padded_to_lanes(samples.count), lanes = hn::Lanes(d);
   std::size_t i = 0;
   for (; i + 4 * lanes <= end; i += 4 * lanes) evaluate_groups<4>(polynomial, degree, cube, samples, i, values);
   for (; i + 2 * lanes <= end; i += 2 * lanes) evaluate_groups<2>(polynomial, degree, cube, samples, i, values);

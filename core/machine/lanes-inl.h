@@ -1,4 +1,4 @@
-// Doubles in SIMD lanes, eight at most. Included once per SIMD level.
+// Doubles in SIMD lanes, kMostLanes at most. Included once per SIMD level.
 #if defined(RAYCONE_CORE_LANES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef RAYCONE_CORE_LANES_INL_H_
 #undef RAYCONE_CORE_LANES_INL_H_
@@ -11,13 +11,15 @@
 #include <array>
 #include <cstdint>
 
+#include "core/machine/simd.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Doubles = hn::CappedTag<double, 8>;
+using Doubles = hn::CappedTag<double, kMostLanes>;
 using Lanes = hn::Vec<Doubles>;
 using LaneMask = hn::Mask<Doubles>;
 constexpr Doubles d;

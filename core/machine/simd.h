@@ -1,7 +1,16 @@
 // SIMD levels of the processor. No value depends on them.
 #pragma once
 
+#include <cstddef>
+
 namespace raycone {
+
+inline constexpr std::size_t kMostLanes = 8;  // doubles in the widest vector
+
+// A count rounded up, so that vectors of any level end where it does.
+[[nodiscard]] constexpr std::size_t padded_to_lanes(std::size_t count) {
+  return (count + kMostLanes - 1) / kMostLanes * kMostLanes;
+}
 
 enum class SimdLevel {
   kBest,  // the best one that this processor has

@@ -226,7 +226,7 @@ class Apart {
 
   // The way of a fan: farther along y, or z, where that alone takes it off all others and the axis before does not. So
   // if different fans are ahead at the two ends of an edge, they pass each other between these where no solid is. Not
-  // much farther: one that is more steps ahead stays ahead along all axes.
+  // much farther: of a few fans, one that is more steps ahead stays ahead along all axes.
   static Vec3 way_of(const std::vector<FanCone>& cones, std::size_t n) {
     constexpr double kAdverse = 0x1p-6, kLittle = 0x1p-8, kFarther = 1.25;
     const auto does = [&](const Vec3& way) {

@@ -434,6 +434,8 @@ MUTANTS = [
         ("core/boundary/flat_piece.cpp", "> reach + (kPlaneError", "> 0.5 * reach + (kPlaneError")]),
     Mutant("planes_are_exact", "normals and differences round", [
         ("core/boundary/flat_piece.cpp", "constexpr double kPlaneError = 0x1p-44;", "constexpr double kPlaneError = 0.0;")]),
+    Mutant("pieces_underflow", "flat pieces meet blocks next to their corners", [
+        ("core/boundary/flat_piece.cpp", "constexpr double kUnderflow = 0x1p-1022;", "constexpr double kUnderflow = 0.0;")]),
 
     # --- Self-intersections ---
     Mutant("neighbours_intersect", "what is shared does not count", [
@@ -657,6 +659,12 @@ MUTANTS = [
         ("core/arrangement/rule_border.cpp", ": Place::kTurned);", ": Place::kAsItIs);")]),
     Mutant("solids_meet_through_edges", "faces at an edge belong together where the solid is between them", [
         ("core/arrangement/take_apart.cpp", "(*order)[(n + order->size() - 1) % order->size()]", "(*order)[(n + 1) % order->size()]")]),
+    Mutant("fans_cross", "fans that go ahead at one end of an edge pass those that do at the other", [
+        ("core/arrangement/take_apart.cpp", "kFarther = 1.25;", "kFarther = 1.0;")]),
+    Mutant("places_cancel", "places next to a plane are right", [
+        ("core/surface/edge_crossing.cpp", "constexpr double kWideSure = 0x1p-58;", "constexpr double kWideSure = 0.0;")]),
+    Mutant("far_sides_are_lost", "gradients from far away are those of the definition", [
+        ("core/exact/direct_gradient.cpp", "constexpr double kFar = 0x1p80;", "constexpr double kFar = 0x1p999;")]),
     Mutant("cavities_go_in", "a vertex moves away from the other parts that touch it", [
         ("core/arrangement/fan_cone.cpp", "return are_on_one_side(*way, other); })", "return are_on_one_side(*way, other) && false; })")]),
     Mutant("flat_triangles_stay", "sides that corners are near to are split there", [

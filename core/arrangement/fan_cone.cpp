@@ -47,6 +47,14 @@ bool FanCone::leaves(const FanCone& other, const Vec3& way) const {
          });
 }
 
+bool FanCone::goes_against_perturbation(const Vec3& way) const {
+  return std::ranges::all_of(sectors_, [&](const Sector& sector) {
+    const Vec3 normal = cross(sector[0], sector[1]);
+    const double perturbed = normal.x != 0.0 ? normal.x : normal.y != 0.0 ? normal.y : normal.z;
+    return dot(normal, way) * perturbed <= 0.0;
+  });
+}
+
 double FanCone::lead(const FanCone& other, const Vec3& way) const {
   double sum = 0.0;
   for (const Sector& sector : sectors_) {

@@ -30,6 +30,10 @@ class FanCone {
   // Whether this fan, moved a bit in a direction, goes away from another one of the same vertex.
   [[nodiscard]] bool leaves(const FanCone& other, const Vec3& way) const;
 
+  // Whether each face, moved in a direction, goes against the perturbation, or stays in its plane: points on it are
+  // then on the side of it that they are on as perturbed.
+  [[nodiscard]] bool goes_against_perturbation(const Vec3& way) const;
+
   // How far a fan's faces at edges that another one has, too, are ahead in a direction: the same at all vertices along
   // an edge where these are the faces.
   [[nodiscard]] double lead(const FanCone& other, const Vec3& way) const;

@@ -224,19 +224,43 @@ class Apart {
     return (1.0 / norm(way)) * way;
   }
 
-  // The way of a fan: farther along y, or z, where that alone takes it off all others and the axis before does not. So
-  // if different fans are ahead at the two ends of an edge, they pass each other between these where no solid is. Not
-  // much farther: of a few fans, one that is more steps ahead stays ahead along all axes.
+  static bool leaves_all(const std::vector<FanCone>& cones, std::size_t n, const Vec3& way) {
+    for (std::size_t m = 0; m < cones.size(); ++m) {
+      if (m != n && !cones[n].leaves(cones[m], way)) return false;
+    }
+    return true;
+  }
+
+  // Along an axis alone, a fan leaves faces in their planes that it need not move: samples may be some roundings off
+  // them. Nothing where it takes more than that, whichever way the others go.
+  static std::optional<Vec3> way_along_one_axis(const std::vector<FanCone>& cones, std::size_t n) {
+    constexpr double kSome = 0x1p-6, kLess = 0x1p-8;
+    for (int axis = 0; axis < 3; ++axis) {
+      Vec3 way;
+      way[axis] = -1.0;
+      bool does = cones[n].goes_against_perturbation(way);
+      for (const double first : {kSome, -kSome}) {
+        for (const double second : {kLess, -kLess}) {
+          Vec3 near = way;
+          near[(axis + 1) % 3] = first;
+          near[(axis + 2) % 3] = second;
+          does = does && leaves_all(cones, n, near);
+        }
+      }
+      if (does) return way;
+    }
+    return std::nullopt;
+  }
+
+  // The way of a fan. Farther along y, or z, where that takes it off all others and the axis before does not: so if
+  // different fans are ahead at the two ends of an edge, they pass each other between these where no solid is. Not much
+  // farther: of a few fans, one that is more steps ahead stays ahead along all axes.
   static Vec3 way_of(const std::vector<FanCone>& cones, std::size_t n) {
     constexpr double kAdverse = 0x1p-6, kLittle = 0x1p-8, kFarther = 1.25;
-    const auto does = [&](const Vec3& way) {
-      for (std::size_t m = 0; m < cones.size(); ++m) {
-        if (m != n && !cones[n].leaves(cones[m], way)) return false;
-      }
-      return true;
-    };
-    const bool x = does({-1.0, kAdverse, kLittle}), y = does({kLittle, -1.0, kAdverse});
-    const bool z = does({kAdverse, kLittle, -1.0});
+    if (const std::optional<Vec3> way = way_along_one_axis(cones, n)) return *way;
+    const bool x = leaves_all(cones, n, {-1.0, kAdverse, kLittle});
+    const bool y = leaves_all(cones, n, {kLittle, -1.0, kAdverse});
+    const bool z = leaves_all(cones, n, {kAdverse, kLittle, -1.0});
     return way_against(y && !x ? kFarther : 1.0, z && !y ? kFarther : 1.0);
   }
 

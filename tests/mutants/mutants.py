@@ -660,7 +660,10 @@ MUTANTS = [
     Mutant("solids_meet_through_edges", "faces at an edge belong together where the solid is between them", [
         ("core/arrangement/take_apart.cpp", "(*order)[(n + order->size() - 1) % order->size()]", "(*order)[(n + 1) % order->size()]")]),
     Mutant("fans_cross", "fans that go ahead at one end of an edge pass those that do at the other", [
+        ("core/arrangement/take_apart.cpp", "if (does) return way;", "if (does && axis > 2) return way;"),
         ("core/arrangement/take_apart.cpp", "kFarther = 1.25;", "kFarther = 1.0;")]),
+    Mutant("fans_leave_planes", "fans move along one axis where that is enough", [
+        ("core/arrangement/take_apart.cpp", "if (does) return way;", "if (does && axis > 2) return way;")]),
     Mutant("places_cancel", "places next to a plane are right", [
         ("core/surface/edge_crossing.cpp", "constexpr double kWideSure = 0x1p-58;", "constexpr double kWideSure = 0.0;")]),
     Mutant("far_sides_are_lost", "gradients from far away are those of the definition", [

@@ -106,8 +106,8 @@ TEST(MakeSurface, TellsThatPiecesAreLost) {
   EXPECT_TRUE(warnings(2.4).empty());
 }
 
-// Parts that touch are taken apart by some roundings, which is more than E so far from the origin. A vertex that has
-// moved so is not in a hole.
+// Parts that touch are taken apart by some roundings, which is more than E so far from the origin: into their insides,
+// as no sample is on their faces. A vertex that has moved so is not in a hole.
 TEST(MakeSurface, ReportsNoHolesOfAClosedMesh) {
   constexpr double kFar = 1e12, kVoxel = 0.1875;
   const auto box = [](const Vec3& lower, const Vec3& upper) {
@@ -115,7 +115,8 @@ TEST(MakeSurface, ReportsNoHolesOfAClosedMesh) {
     return box_mesh(far + lower, far + upper);
   };
   const TriangleMesh mesh = weld(joined(box({2, 0, 1}, {3, 3, 2}), box({2, 0, 1}, {3, 1, 3})), {});
-  const Lattice lattice{{kFar + 1.8125, kFar - 0.25, kFar + 0.6875}, {kVoxel, kVoxel, kVoxel}, {0, 0, 0}, {9, 20, 15}};
+  const Lattice lattice{
+      {kFar + 1.84375, kFar - 0.21875, kFar + 0.71875}, {kVoxel, kVoxel, kVoxel}, {0, 0, 0}, {9, 20, 15}};
   SurfaceOptions options{.rule = *rule_from_name("odd"), .simplify = 3e-4};
   const MadeSurface made = make_surface("m", mesh, exterior_edges(mesh), lattice, options, kAllMemory);
   EXPECT_EQ(made.report.hole_area, 0.0);

@@ -224,6 +224,9 @@ class Apart {
     return (1.0 / norm(way)) * way;
   }
 
+  // Whether an axis alone would do is asked of ways a bit off it: along it, faces may be level.
+  static constexpr double kAcross = 0x1p-6, kLessAcross = 0x1p-8;
+
   static bool leaves_all(const std::vector<FanCone>& cones, std::size_t n, const Vec3& way) {
     for (std::size_t m = 0; m < cones.size(); ++m) {
       if (m != n && !cones[n].leaves(cones[m], way)) return false;
@@ -234,13 +237,12 @@ class Apart {
   // Along an axis alone, a fan leaves faces in their planes that it need not move: samples may be some roundings off
   // them. Nothing where it takes more than that, whichever way the others go.
   static std::optional<Vec3> way_along_one_axis(const std::vector<FanCone>& cones, std::size_t n) {
-    constexpr double kSome = 0x1p-6, kLess = 0x1p-8;
     for (int axis = 0; axis < 3; ++axis) {
       Vec3 way;
       way[axis] = -1.0;
       bool does = cones[n].goes_against_perturbation(way);
-      for (const double first : {kSome, -kSome}) {
-        for (const double second : {kLess, -kLess}) {
+      for (const double first : {kAcross, -kAcross}) {
+        for (const double second : {kLessAcross, -kLessAcross}) {
           Vec3 near = way;
           near[(axis + 1) % 3] = first;
           near[(axis + 2) % 3] = second;
@@ -256,11 +258,11 @@ class Apart {
   // different fans are ahead at the two ends of an edge, they pass each other between these where no solid is. Not much
   // farther: of a few fans, one that is more steps ahead stays ahead along all axes.
   static Vec3 way_of(const std::vector<FanCone>& cones, std::size_t n) {
-    constexpr double kAdverse = 0x1p-6, kLittle = 0x1p-8, kFarther = 1.25;
+    constexpr double kFarther = 1.25;
     if (const std::optional<Vec3> way = way_along_one_axis(cones, n)) return *way;
-    const bool x = leaves_all(cones, n, {-1.0, kAdverse, kLittle});
-    const bool y = leaves_all(cones, n, {kLittle, -1.0, kAdverse});
-    const bool z = leaves_all(cones, n, {kAdverse, kLittle, -1.0});
+    const bool x = leaves_all(cones, n, {-1.0, kAcross, kLessAcross});
+    const bool y = leaves_all(cones, n, {kLessAcross, -1.0, kAcross});
+    const bool z = leaves_all(cones, n, {kAcross, kLessAcross, -1.0});
     return way_against(y && !x ? kFarther : 1.0, z && !y ? kFarther : 1.0);
   }
 

@@ -11,8 +11,9 @@ namespace raycone {
 struct ApartOptions {
   double distance = 0.0;          // by which vertices move, world units
   bool single_precision = false;  // new vertices are rounded to float
-  // All move against the perturbation, by far less along y than along x, and along z than along y, those of several
-  // fans farther and farther: what lies on faces is on the side of all of them that it is on as perturbed.
+  // All move against the perturbation: along one axis where that is enough, else by far less along y than along x, and
+  // along z than along y; those of several fans farther and farther. What lies on faces is then on the side of all of
+  // them that it is on as perturbed.
   bool against_perturbation = false;
 };
 

@@ -38,6 +38,14 @@ inline mpz_class integer(double x, int exponent) {
   return mpz_class(digits) << static_cast<mp_bitcnt_t>(std::max(own - kDigits + exponent, 0));
 }
 
+// The same of a point; not below 0.
+inline int exponent_to_integers(const Vec3& v) {
+  return std::max({0, exponent_to_integer(v.x), exponent_to_integer(v.y), exponent_to_integer(v.z)});
+}
+inline IntegerVec3 integers(const Vec3& v, int exponent) {
+  return {integer(v.x, exponent), integer(v.y, exponent), integer(v.z, exponent)};
+}
+
 using Corners = std::array<IntegerVec3, 3>;
 
 // Corners relative to q, times 2^exponent.
@@ -48,15 +56,10 @@ struct ScaledTriangle {
 
 inline ScaledTriangle as_integers(const std::array<Vec3, 3>& points, const Vec3& q) {
   ScaledTriangle result;
-  for (int axis = 0; axis < 3; ++axis) {
-    result.exponent = std::max(result.exponent, exponent_to_integer(q[axis]));
-    for (const Vec3& p : points) result.exponent = std::max(result.exponent, exponent_to_integer(p[axis]));
-  }
-  const auto integers = [&](const Vec3& p) {
-    return IntegerVec3{integer(p.x, result.exponent), integer(p.y, result.exponent), integer(p.z, result.exponent)};
-  };
-  const IntegerVec3 origin = integers(q);
-  for (std::size_t i = 0; i < 3; ++i) result.corners[i] = minus(integers(points[i]), origin);
+  result.exponent = exponent_to_integers(q);
+  for (const Vec3& p : points) result.exponent = std::max(result.exponent, exponent_to_integers(p));
+  const IntegerVec3 origin = integers(q, result.exponent);
+  for (std::size_t i = 0; i < 3; ++i) result.corners[i] = minus(integers(points[i], result.exponent), origin);
   return result;
 }
 

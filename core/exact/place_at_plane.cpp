@@ -9,15 +9,9 @@ namespace raycone {
 
 double place_at_plane(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   int exponent = 0;
-  for (const Vec3& point : {p, q, a, b, c}) {
-    for (int axis = 0; axis < 3; ++axis) exponent = std::max(exponent, exact::exponent_to_integer(point[axis]));
-  }
-  const auto integers = [&](const Vec3& v) {
-    return exact::IntegerVec3{exact::integer(v.x, exponent), exact::integer(v.y, exponent),
-                              exact::integer(v.z, exponent)};
-  };
-  const exact::IntegerVec3 origin = integers(a);
-  const auto from_a = [&](const Vec3& v) { return exact::minus(integers(v), origin); };
+  for (const Vec3& v : {p, q, a, b, c}) exponent = std::max(exponent, exact::exponent_to_integers(v));
+  const exact::IntegerVec3 origin = exact::integers(a, exponent);
+  const auto from_a = [&](const Vec3& v) { return exact::minus(exact::integers(v, exponent), origin); };
   const exact::IntegerVec3 normal = exact::cross(from_a(b), from_a(c));
   const mpz_class of_p = abs(exact::dot(normal, from_a(p))), of_q = abs(exact::dot(normal, from_a(q)));
   constexpr int kBits = 64;

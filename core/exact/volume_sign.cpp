@@ -35,15 +35,9 @@ int volume_sign(const std::vector<Triangle>& triangles, const std::vector<Vec3>&
   if (const int sign = sign_in_doubles(triangles, vertices); sign != 0) return sign;
   int exponent = 0;
   for (const Triangle& t : triangles) {
-    for (const std::uint32_t v : t) {
-      for (int axis = 0; axis < 3; ++axis) exponent = std::max(exponent, exact::exponent_to_integer(vertices[v][axis]));
-    }
+    for (const std::uint32_t v : t) exponent = std::max(exponent, exact::exponent_to_integers(vertices[v]));
   }
-  const auto integers = [&](std::uint32_t v) {
-    const Vec3& p = vertices[v];
-    return exact::IntegerVec3{exact::integer(p.x, exponent), exact::integer(p.y, exponent),
-                              exact::integer(p.z, exponent)};
-  };
+  const auto integers = [&](std::uint32_t v) { return exact::integers(vertices[v], exponent); };
   mpz_class sum = 0;
   for (const Triangle& t : triangles) sum += exact::dot(integers(t[0]), exact::cross(integers(t[1]), integers(t[2])));
   return sgn(sum);

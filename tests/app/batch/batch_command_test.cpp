@@ -32,14 +32,14 @@ std::size_t count_lines(const std::string& text) { return static_cast<std::size_
 
 TEST_F(Batch, AWorkerIsChargedForOpenVdbOnce) {
   for (const char* const name : {"a.obj", "b.obj", "c.obj", "d.obj"}) put(name);
-  const CommandResult result = run({"--threads", "1", "--memory-limit", "64M"});
+  const CommandResult result = run({"--threads", "1", "--memory-limit", "64M", "--format", "vdb"});
   EXPECT_EQ(result.status, 0) << result.err;
 }
 
 TEST_F(Batch, GivesEachMeshWhatLatticeGivesIt) {
   const std::string cube = put("sub/cube one.OBJ");
   const std::string triangle = put("\xC3\xA4.obj", kTriangle);
-  const CommandResult result = run();
+  const CommandResult result = run_raycone({"batch", meshes_, "--out-dir", out_, "--resolution", "8"});
   EXPECT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out, "");
   EXPECT_EQ(statuses(rows()), (Statuses{{"sub/cube one.OBJ", "ok"}, {"\xC3\xA4.obj", "ok"}}));
@@ -113,9 +113,9 @@ TEST_F(Batch, AgainDoesNothingButWhatIsMissingOrOutOfDate) {
     words.push_back("--dry-run");
     return run(words).out;
   };
-  fs::remove(out_ + "/b.vdb");
+  fs::remove(out_ + "/b.npy");
   EXPECT_EQ(listed(), meshes_ + "/b.obj\toutput missing\n");
-  const auto touched = fs::last_write_time(out_ + "/a.vdb") + std::chrono::hours(1);
+  const auto touched = fs::last_write_time(out_ + "/a.npy") + std::chrono::hours(1);
   fs::last_write_time(meshes_ + "/c.obj", touched);
   EXPECT_EQ(count_lines(listed()), 1U) << "another time stamp, but the same content";
   put("d.obj", kTriangle);
@@ -125,10 +125,10 @@ TEST_F(Batch, AgainDoesNothingButWhatIsMissingOrOutOfDate) {
   EXPECT_EQ(count_lines(listed({"--format", "csv"})), 4U);
   EXPECT_EQ(count_lines(listed({"--threads", "1", "--quiet", "--timeout", "7", "--jobs", "1"})), 2U) << "no effect";
 
-  const auto time_of_a = fs::last_write_time(out_ + "/a.vdb");
+  const auto time_of_a = fs::last_write_time(out_ + "/a.npy");
   const std::string row_of_a = csv_line(to_record(rows().at("a.obj")));
   ASSERT_EQ(run().status, 0);
-  EXPECT_EQ(fs::last_write_time(out_ + "/a.vdb"), time_of_a);
+  EXPECT_EQ(fs::last_write_time(out_ + "/a.npy"), time_of_a);
   EXPECT_EQ(csv_line(to_record(rows().at("a.obj"))), row_of_a);
   EXPECT_EQ(rows().at("d.obj").figures->faces, 1U);
   EXPECT_EQ(listed(), "");

@@ -31,12 +31,14 @@ class Batch : public testing::Test {
     return path.string();
   }
 
+  // Options given twice count as given last. For VDB, the default, each worker would take most of its time to load
+  // OpenVDB.
   [[nodiscard]] std::vector<std::string> arguments(const std::vector<std::string>& more = {}) const {
     return arguments_into(out_, more);
   }
   [[nodiscard]] std::vector<std::string> arguments_into(const std::string& out,
                                                         const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{"batch", meshes_, "--out-dir", out, "--resolution", "8"};
+    std::vector<std::string> words{"batch", meshes_, "--out-dir", out, "--resolution", "8", "--format", "npy"};
     words.insert(words.end(), more.begin(), more.end());
     return words;
   }

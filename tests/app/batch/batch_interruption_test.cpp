@@ -102,7 +102,7 @@ class BatchInterruption : public Batch {
     put("b.obj", triangle_soup(2001));
   }
   [[nodiscard]] std::vector<std::string> long_run() const {
-    return raycone_command(arguments({"--resolution", "300", "--threads", "2"}));
+    return raycone_command(arguments({"--resolution", "300", "--threads", "2", "--format", "vdb"}));
   }
 
   // Waits until two workers have opened their temporary files.
@@ -240,7 +240,8 @@ TEST_F(BatchInterruption, AWorkerThatCrashesCostsItsRowAndIsReplaced) {
   EXPECT_EQ(statuses(rows()), (Statuses{{"a.obj", "crashed"}, {"b.obj", "crashed"}}));
   EXPECT_EQ(rows().at("a.obj").exit + rows().at("b.obj").exit, 128 + SIGABRT + 128 + SIGKILL);
   EXPECT_EQ(temporaries(), 0U);
-  EXPECT_NE(run({"--resolution", "300", "--dry-run"}).out.find("a.obj\tcrashed before"), std::string::npos);
+  EXPECT_NE(run({"--resolution", "300", "--format", "vdb", "--dry-run"}).out.find("a.obj\tcrashed before"),
+            std::string::npos);
 }
 
 // Some launchers leave that to their children, and the system then does not tell how those of raycone ended.
@@ -372,7 +373,8 @@ TEST_F(BatchInterruption, NeverMoreThreadsAreBusyThanAllowed) {
   put_long();
   for (const std::size_t threads : {2U, 3U, 5U}) {
     fs::remove_all(out_);
-    Command command(raycone_command(arguments({"--resolution", "300", "--threads", std::to_string(threads)})));
+    Command command(
+        raycone_command(arguments({"--resolution", "300", "--threads", std::to_string(threads), "--format", "vdb"})));
     const std::vector<pid_t> workers = wait_for_workers(command);
     const int to_start = sum(thread_times({command.process()}));
     std::map<std::string, int> busy;

@@ -19,7 +19,7 @@ TEST_F(Report, ShowsAllMeshesOfAllShardsOnASelfContainedPage) {
   const std::string page = read_text(out_ + "/report.html");
   for (const char* const expected :
        {"a&amp;b.obj", "c.obj", "bad.obj", "&lt;2&gt;", "<svg", "exterior edges", "data:image/bmp;base64,Qk",
-        "<td class=\"bad\">invalid</td>", "Meshes finished 2", " UTC<br>\n<code>--format=vdb"}) {
+        "<td class=\"bad\">invalid</td>", "Meshes finished 2", " UTC<br>\n<code>--format=npy"}) {
     EXPECT_NE(page.find(expected), std::string::npos) << expected;
   }
   EXPECT_LT(page.find("<h2>Failures"), page.find("<h2>Time against size"));

@@ -23,7 +23,7 @@ of_bytes='BytesDepend|SamplesDependOnTheJobAlone|KilledAtAnyMoment'
 
 # What starts batches again and again: with AddressSanitizer a worker takes a quarter of a second to start, and reads
 # and writes what other batches do.
-of_state='^(BatchStale|BatchPrune)\.'
+of_state='^(Batch|BatchInterruption|BatchStale|BatchPrune)\.'
 
 # black_box PRESET CTEST-OPTION...: the dev build's tests of what PRESET built.
 black_box() {

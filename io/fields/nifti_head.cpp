@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 
 #include "io/fields/nifti_fields.h"
@@ -58,6 +59,22 @@ Vec3 sform_column(const NiftiHead& head, std::size_t column) {
   return {part(0), part(1), part(2)};
 }
 
+// The columns of the qform's rotation. Where all of them are axes of the world up to what 32 bits of the quaternion
+// leave (3e-7), they are these axes: those of scanners that turned theirs by right angles.
+std::array<Vec3, 3> qform_columns(const NiftiHead& head) {
+  constexpr double kRounding = 1e-6;
+  const Vec3 parts = parts_at(head, nifti::kQuatern);
+  const std::array<Vec3, 3> columns = columns_of({parts.x, parts.y, parts.z});
+  std::array<Vec3, 3> nearest;
+  for (std::size_t a = 0; a < 3; ++a) {
+    for (int row = 0; row < 3; ++row) {
+      nearest[a][row] = std::round(columns[a][row]);
+      if (!(std::abs(columns[a][row] - nearest[a][row]) <= kRounding)) return columns;
+    }
+  }
+  return nearest;
+}
+
 }  // namespace
 
 PlacedLattice nifti_lattice(const std::string& path, const NiftiHead& head) {
@@ -72,8 +89,7 @@ PlacedLattice nifti_lattice(const std::string& path, const NiftiHead& head) {
   }
   if (!(head.integer(nifti::kQFormCode) > 0))
     fail_as_volume(path, "it has neither sform nor qform, expected a place in the world");
-  const Vec3 parts = parts_at(head, nifti::kQuatern);
-  steps = columns_of({parts.x, parts.y, parts.z});
+  steps = qform_columns(head);
   for (std::size_t a = 0; a < 3; ++a) {
     const double spacing = head.real(nifti::kPixDim + 4 * (a + 1));
     if (!(spacing > 0.0))

@@ -243,6 +243,26 @@ class Files(Like):
                 nibabel.save(only, "q.nii")
                 self.assertLess(abs(self.like("q.nii") - points).max(), 1e-5)
 
+    def test_quaternions_of_right_angles_have_no_rounding(self):
+        """Of 32 bits, as scanners leave them: the axes are the world's, so that all commands take them."""
+        half = numpy.float32(numpy.sqrt(0.5))
+        for quaternion in ((half, 0, 0), (0, -half, 0), (0, 0, half), (.5, .5, .5), (half, half, 0), (1, 0, 0)):
+            for factor in (1, -1):
+                head = bytearray(352)
+                struct.pack_into("<i", head, 0, 348)
+                struct.pack_into("<8h", head, 40, 3, 3, 4, 5, 1, 1, 1, 1)
+                struct.pack_into("<2h", head, 70, 16, 32)
+                struct.pack_into("<4f", head, 76, factor, .5, .75, .625)
+                struct.pack_into("<f", head, 108, 352)
+                struct.pack_into("<2h", head, 252, 1, 0)
+                struct.pack_into("<6f", head, 256, *quaternion, -1, 2, -3)
+                struct.pack_into("<4s", head, 344, b"n+1\0")
+                with open("q.nii", "wb") as file:
+                    file.write(head + bytes(4 * 3 * 4 * 5))
+                points = self.like("q.nii")
+                self.assertEqual(len(numpy.unique(points, axis=0)), 3 * 4 * 5)
+                self.assertTrue((points * 8 % 1 == 0).all(), quaternion)
+
     def test_nifti_close_to_half_turns(self):
         """What programs decode from the qform is where the sform has it, or there is none."""
         shown = []

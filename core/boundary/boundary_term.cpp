@@ -20,7 +20,7 @@ static_assert(kDoubtPerEdge * kMostFactors * kMaxTriangles <= Boundary::kMostDou
 
 double doubt_of_factors(double edge_factors) { return kDoubtPerEdge * edge_factors; }
 
-ExactTerm::ExactTerm(const Boundary& boundary, double edge_factors)
+CompleteTerm::CompleteTerm(const Boundary& boundary, double edge_factors)
     : boundary_(boundary), doubt_(doubt_of_factors(edge_factors)) {}
 
 // |w - w2| + the bound of w2 = n - enclosure, rounded up.

@@ -12,7 +12,7 @@ namespace raycone {
 
 // An engine: the winding numbers of one open mesh, tile by tile. It promises one of two things:
 //
-// - Exact engines (ExactTerm) sum up all that there is, in an order that the mesh alone gives. A value is off by
+// - Complete engines (CompleteTerm) sum up all that there is, in an order that the mesh alone gives. A value is off by
 //   rounding, and by nothing else.
 // - Bounded engines leave out what they can bound. That bound is part of doubt() and of error_bound().
 //
@@ -51,9 +51,9 @@ class BoundaryTerm {
 // multiplicities; a triangle counts as three.
 [[nodiscard]] double doubt_of_factors(double edge_factors);
 
-// What exact engines have in common: each factor rounds by a bounded number of turns, and the enclosure of the cone in
-// extended precision tells how far a value is off.
-class ExactTerm : public BoundaryTerm {
+// What complete engines have in common: each factor rounds by a bounded number of turns, and the enclosure of the cone
+// in extended precision tells how far a value is off.
+class CompleteTerm : public BoundaryTerm {
  public:
   [[nodiscard]] double doubt() const final { return doubt_; }
   [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const final {
@@ -62,7 +62,7 @@ class ExactTerm : public BoundaryTerm {
 
  protected:
   // As doubt_of_factors() says. `boundary` must outlive this.
-  ExactTerm(const Boundary& boundary, double edge_factors);
+  CompleteTerm(const Boundary& boundary, double edge_factors);
 
   [[nodiscard]] const Boundary& boundary() const { return boundary_; }
 

@@ -12,7 +12,7 @@
 namespace raycone {
 
 // w = n - the cone's winding number. Rounding errors of some u per edge.
-class Cone final : public ExactTerm {
+class Cone final : public CompleteTerm {
  public:
   // `boundary` must outlive this.
   Cone(const Boundary& boundary, SimdLevel level);

@@ -6,12 +6,12 @@
 #include <cstddef>
 #include <iterator>
 #include <limits>
-#include <mutex>
 #include <vector>
 
 #include "core/boundary/chain.h"
 #include "core/boundary/cone_kernel.h"
 #include "core/boundary/sample_tile.h"
+#include "core/machine/built_once.h"
 
 namespace raycone {
 namespace {
@@ -55,11 +55,8 @@ double measured(SimdLevel level) {
 }  // namespace
 
 double edge_seconds(SimdLevel level) {
-  static std::array<std::once_flag, 4> measured_once;
-  static std::array<double, 4> seconds;
-  const auto n = static_cast<std::size_t>(level);
-  std::call_once(measured_once[n], [&] { seconds[n] = measured(level); });
-  return seconds[n];
+  static const std::array<BuiltOnce<double>, 4> seconds;
+  return seconds[static_cast<std::size_t>(level)].get([&] { return measured(level); });
 }
 
 }  // namespace raycone

@@ -24,7 +24,7 @@ struct SolidFaces {
 [[nodiscard]] SolidFaces solid_faces(const TriangleMesh& mesh);
 
 // Rounding errors of some u per triangle.
-class SolidAngles final : public ExactTerm {
+class SolidAngles final : public CompleteTerm {
  public:
   // `boundary`: of the mesh; it must outlive this. Needs DefaultFloatingPoint.
   SolidAngles(const TriangleMesh& mesh, const Boundary& boundary, SimdLevel level);

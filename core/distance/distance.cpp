@@ -5,8 +5,6 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <mutex>
-#include <optional>
 #include <vector>
 
 #include "core/crossings/check_counts.h"
@@ -17,6 +15,7 @@
 #include "core/distance/distance_tree.h"
 #include "core/exact/scale.h"
 #include "core/machine/buckets.h"
+#include "core/machine/built_once.h"
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
 
@@ -122,8 +121,7 @@ struct DistanceEvaluator::Implementation {
   }
 
   [[nodiscard]] const DistanceTree& nearest() const {
-    std::call_once(tree_built, [this] { tree.emplace(mesh, simd); });
-    return *tree;
+    return tree.get([this] { return DistanceTree(mesh, simd); });
   }
 
   // `limit`: a square, in units, beyond which the distance may be another one beyond it.
@@ -200,8 +198,7 @@ struct DistanceEvaluator::Implementation {
   SimdLevel simd;
 
  private:
-  mutable std::once_flag tree_built;
-  mutable std::optional<DistanceTree> tree;
+  BuiltOnce<DistanceTree> tree;
 };
 
 DistanceEvaluator::DistanceEvaluator(const TriangleMesh& mesh, SimdLevel level) {

@@ -53,42 +53,35 @@ double ScaledMesh::direct_cost() const {
 }
 
 const RayCaster& ScaledMesh::rays() const {
-  std::call_once(rays_built_, [this] { rays_.emplace(mesh_); });
-  return *rays_;
+  return rays_.get([this] { return RayCaster(mesh_); });
 }
 
 const ProjectedGrid& ScaledMesh::grid() const {
-  std::call_once(grid_built_, [this] { grid_.emplace(mesh_); });
-  return *grid_;
+  return grid_.get([this] { return ProjectedGrid(mesh_); });
 }
 
 const SlabOrder& ScaledMesh::slab_order(int axis) const {
-  const auto n = static_cast<std::size_t>(axis - 1);
-  std::call_once(slab_orders_built_[n], [&] { slab_orders_[n].emplace(mesh_, axis); });
-  return *slab_orders_[n];
+  return slab_orders_[static_cast<std::size_t>(axis - 1)].get([&] { return SlabOrder(mesh_, axis); });
 }
 
 const Caps& ScaledMesh::caps() const {
   constexpr double kNarrow = 0x1p-7;  // of the mesh's size: a voxel or some
-  std::call_once(caps_built_, [this] {
-    caps_ = counts_crossings() ? make_caps(boundary_, kNarrow * longest_side(bounding_box(mesh_))) : Caps();
+  return caps_.get([this] {
+    return counts_crossings() ? make_caps(boundary_, kNarrow * longest_side(bounding_box(mesh_))) : Caps();
   });
-  return *caps_;
 }
 
 const ChangeBound& ScaledMesh::change_bound() const {
-  std::call_once(change_bound_built_, [this] { change_bound_.emplace(caps(), options_.level); });
-  return *change_bound_;
+  return change_bound_.get([this] { return ChangeBound(caps(), options_.level); });
 }
 
 const Blocks& ScaledMesh::blocks() const {
-  std::call_once(blocks_built_, [this] {
+  return blocks_.get([this] {
     SolidFaces faces = solid_faces(counts_crossings() ? caps().mesh : mesh_);
     const auto near = counts_crossings() ? LatticeBlocks::Near::kBoundary : LatticeBlocks::Near::kTriangles;
-    blocks_.reset(new Blocks{!faces.has_repeated_faces,
-                             LatticeBlocks(std::move(faces.triangles), tolerance(), options_.level, near)});
+    return Blocks{!faces.has_repeated_faces,
+                  LatticeBlocks(std::move(faces.triangles), tolerance(), options_.level, near)};
   });
-  return *blocks_;
 }
 
 namespace {
@@ -122,8 +115,7 @@ std::unique_ptr<const BlocksOfPoints> ScaledMesh::make_blocks_of_points() const 
 }
 
 const BlocksOfPoints* ScaledMesh::blocks_of_points() const {
-  std::call_once(points_built_, [this] { blocks_of_points_ = make_blocks_of_points(); });
-  return blocks_of_points_.get();
+  return blocks_of_points_.get([this] { return make_blocks_of_points(); }).get();
 }
 
 // The far field, where it is asked for and estimated to be cheaper.
@@ -151,15 +143,11 @@ std::unique_ptr<const FarField> ScaledMesh::make_far_field() const {
 }
 
 const FarField* ScaledMesh::far_field() const {
-  std::call_once(far_built_, [this] {
-    far_ = make_far_field();
-    far_is_known_.store(true, std::memory_order_release);
-  });
-  return far_.get();
+  return far_.get([this] { return make_far_field(); }).get();
 }
 
 const FarField* ScaledMesh::far_field_without_waiting() const {
-  if (!far_is_known_.load(std::memory_order_acquire) && far_is_taken_.test_and_set()) return nullptr;
+  if (!far_.if_built() && far_is_taken_.test_and_set()) return nullptr;
   return far_field();
 }
 
@@ -178,8 +166,7 @@ const FarField* ScaledMesh::far_field_for(std::size_t samples) const {
   constexpr std::uint64_t kEnough = 4'000;
   if (options_.summation == Summation::kFarField) return far_field();
   if (!options_.accuracy.sides_only) return has_far_field() ? far_field() : nullptr;
-  const bool is_known = far_is_known_.load(std::memory_order_acquire);
-  if (!is_known && samples_.load(std::memory_order_relaxed) < kEnough) {
+  if (!far_.if_built() && samples_.load(std::memory_order_relaxed) < kEnough) {
     samples_.fetch_add(samples, std::memory_order_relaxed);
     return nullptr;
   }
@@ -240,7 +227,7 @@ void ScaledMesh::set_values(PointBlocks::Sums& sums, SampleTile& samples, std::s
                             std::span<double> values, Settling settling) const {
   sums.evaluate(samples, values);
   if (counts_crossings()) {
-    const std::array<std::int64_t, kTile> caps = blocks_of_points_->caps.of(samples);
+    const std::array<std::int64_t, kTile> caps = blocks_of_points()->caps.of(samples);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] += static_cast<double>(crossings[i] - caps[i]);
   }
   if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values, doubt_of_blocks());
@@ -282,12 +269,11 @@ ScaledMeshes::ScaledMeshes(const PowerOfTwo& scale, TriangleMesh&& mesh, const E
     : scaled_(std::move(mesh), scale, options) {}
 
 const ScaledMesh& ScaledMeshes::unscaled() const {
-  std::call_once(unscaled_built_, [this] {
+  return unscaled_.get([this] {
     EvaluatorOptions options = scaled_.options();
     options.accuracy.tolerance = 0.0;  // few queries need this, and its coordinates may be of any size
-    unscaled_.emplace(scaled_.unscaled_mesh(), PowerOfTwo(0), options);
+    return ScaledMesh(scaled_.unscaled_mesh(), PowerOfTwo(0), options);
   });
-  return *unscaled_;
 }
 
 }  // namespace raycone

@@ -7,8 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <mutex>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -29,6 +27,7 @@
 #include "core/far/far_field.h"
 #include "core/far/lattice_blocks.h"
 #include "core/far/point_blocks.h"
+#include "core/machine/built_once.h"
 
 namespace raycone {
 
@@ -155,8 +154,10 @@ class ScaledMesh {
   // Not while an evaluation runs.
   [[nodiscard]] Terms terms() const {
     Terms terms{direct_terms_, 0};
-    if (far_) terms += {far_->near_terms(), far_->far_terms()};
-    if (blocks_) terms += {blocks_->sums.near_terms(), blocks_->sums.far_terms()};
+    if (const auto* const far = far_.if_built(); far && *far) terms += {(*far)->near_terms(), (*far)->far_terms()};
+    if (const Blocks* const blocks = blocks_.if_built()) {
+      terms += {blocks->sums.near_terms(), blocks->sums.far_terms()};
+    }
     return terms;
   }
 
@@ -183,18 +184,14 @@ class ScaledMesh {
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
   mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
   mutable std::atomic_flag far_is_taken_;
-  mutable std::atomic<bool> far_is_known_ = false;
-  mutable std::once_flag rays_built_, grid_built_, caps_built_, change_bound_built_, far_built_, blocks_built_,
-      points_built_;
-  mutable std::array<std::once_flag, 2> slab_orders_built_;
-  mutable std::optional<RayCaster> rays_;
-  mutable std::optional<ProjectedGrid> grid_;
-  mutable std::optional<Caps> caps_;
-  mutable std::optional<ChangeBound> change_bound_;
-  mutable std::unique_ptr<const Blocks> blocks_;
-  mutable std::unique_ptr<const FarField> far_;                     // may refer to blocks_ and caps_
-  mutable std::unique_ptr<const BlocksOfPoints> blocks_of_points_;  // refers to blocks_ and caps_
-  mutable std::array<std::optional<SlabOrder>, 2> slab_orders_;
+  BuiltOnce<RayCaster> rays_;
+  BuiltOnce<ProjectedGrid> grid_;
+  std::array<BuiltOnce<SlabOrder>, 2> slab_orders_;
+  BuiltOnce<Caps> caps_;
+  BuiltOnce<ChangeBound> change_bound_;
+  BuiltOnce<Blocks> blocks_;
+  BuiltOnce<std::unique_ptr<const FarField>> far_;                     // may refer to blocks_ and caps_
+  BuiltOnce<std::unique_ptr<const BlocksOfPoints>> blocks_of_points_;  // refers to blocks_ and caps_
 };
 
 // A mesh in the scale in which predicates are fast, and as it is for queries with a coordinate that this scale would
@@ -208,7 +205,7 @@ class ScaledMeshes {
   [[nodiscard]] const ScaledMesh& unscaled() const;
   [[nodiscard]] Terms terms() const {
     Terms terms = scaled_.terms();
-    if (unscaled_) terms += unscaled_->terms();
+    if (const ScaledMesh* const unscaled = unscaled_.if_built()) terms += unscaled->terms();
     return terms;
   }
   [[nodiscard]] const ScaledMesh& of_query(bool scaling_is_exact) const {
@@ -219,8 +216,7 @@ class ScaledMeshes {
   ScaledMeshes(const PowerOfTwo& scale, TriangleMesh&& mesh, const EvaluatorOptions& options);
 
   ScaledMesh scaled_;
-  mutable std::once_flag unscaled_built_;
-  mutable std::optional<ScaledMesh> unscaled_;
+  BuiltOnce<ScaledMesh> unscaled_;
 };
 
 }  // namespace raycone

@@ -21,6 +21,7 @@
 #include "core/far/harmonic_fit.h"
 #include "core/far/lattice_blocks_walk.h"
 #include "core/mesh/weld.h"
+#include "tests/support/differences.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -74,7 +75,7 @@ double largest_error(const Coefficients& polynomial, const Function& f) {
     for (std::size_t y = 0; y < along.size(); ++y) {
       for (std::size_t x = 0; x < along.size(); ++x) {
         const double value = values[(z * along.size() + y) * GridValues::row_size(along.size()) + x];
-        largest = std::max(largest, std::abs(value - f(Vec3{along[x], along[y], along[z]})));
+        largest = test::larger_difference(largest, std::abs(value - f(Vec3{along[x], along[y], along[z]})));
       }
     }
   }
@@ -163,7 +164,7 @@ TEST(HarmonicPolynomialTest, PartsOfPartsRoundLessThanFits) {
       const auto same = grid_of_part.evaluate(part, kDegree, cube, xs, ys, zs);
       for (std::size_t i = 0; i < whole.size(); ++i) {
         if (i % GridValues::row_size(xs.size()) < xs.size())
-          largest = std::max(largest, std::abs(whole[i] - same[i]) / most);
+          largest = test::larger_difference(largest, std::abs(whole[i] - same[i]) / most);
       }
     }
   }
@@ -289,7 +290,7 @@ void expect_sums_within(double tolerance, std::span<const SolidTriangle> triangl
     ProductTile products;
     solid_angle_kernel(SimdLevel::kBest)(triangles, tile, products);
     const double w = static_cast<double>(products.turns(0)) + products.argument[0];
-    largest = std::max(largest, std::abs(sums[n] - w));
+    largest = test::larger_difference(largest, std::abs(sums[n] - w));
   }
   EXPECT_LT(largest, tolerance);
   EXPECT_GT(largest, tolerance * 1e-5);  // polynomials are at work
@@ -475,8 +476,7 @@ TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceOfTheDirectSum) {
     EXPECT_GT(coarse.terms().near, 0U);
     EXPECT_GE(coarse.terms().far, values.size());  // the polynomial of each
     EXPECT_EQ(tally.degenerate, evaluator(mesh, 0.0).evaluate(lattice, layers, direct).degenerate);
-    double largest = 0.0;
-    for (std::size_t n = 0; n < values.size(); ++n) largest = std::max(largest, std::abs(values[n] - direct[n]));
+    const double largest = test::largest_difference(values, direct);
     EXPECT_LT(largest, tolerance);
     EXPECT_GT(largest, tolerance * 1e-5);
   }
@@ -498,7 +498,7 @@ TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceFarFromTheOrigin) {
       const WindingNumberEvaluator coarse = evaluator(mesh, tolerance);
       coarse.evaluate(lattice, layers, values);
       double largest = 0.0;
-      for (std::size_t n = 0; n < values.size(); ++n) largest = std::max(largest, std::abs(values[n] - direct[n]));
+      largest = test::larger_difference(largest, test::largest_difference(values, direct));
       EXPECT_LT(largest, tolerance) << offset;
       if (tolerance == 1e-4) {
         EXPECT_GE(coarse.terms().far, values.size()) << "no polynomials: nothing was tested";
@@ -537,8 +537,7 @@ TEST(LatticeBlocksTest, MovedNodesOfFitsKeepTheTolerance) {
     std::vector<double> direct(64 * 64 * 2), values(direct.size());
     evaluator(mesh, 0.0).evaluate(lattice, layers, direct);
     evaluator(mesh, c.tolerance).evaluate(lattice, layers, values);
-    double largest = 0.0;
-    for (std::size_t n = 0; n < values.size(); ++n) largest = std::max(largest, std::abs(values[n] - direct[n]));
+    const double largest = test::largest_difference(values, direct);
     EXPECT_LE(largest, c.tolerance) << c.offset;
   }
 }
@@ -568,8 +567,7 @@ TEST(LatticeBlocksTest, MovedNodesOfFitsKeepTheToleranceAtPoints) {
   const WindingNumberEvaluator coarse(
       mesh, {.summation = Summation::kBlocks, .accuracy = {.tolerance = kTolerance, .points = 250'000}});
   coarse.evaluate(points, values);
-  double largest = 0.0;
-  for (std::size_t n = 0; n < values.size(); ++n) largest = std::max(largest, std::abs(values[n] - direct[n]));
+  const double largest = test::largest_difference(values, direct);
   EXPECT_LE(largest, kTolerance);
 }
 
@@ -625,8 +623,7 @@ TEST(LatticeBlocksTest, AreasWhoseSquaresUnderflowAreNotNothing) {
     const Lattice tiny{unit * lattice.origin, unit * lattice.spacing, lattice.index_min, lattice.counts};
     const WindingNumberEvaluator by_blocks = evaluator(mesh, 1e-9);
     by_blocks.evaluate(tiny, whole(tiny), values);
-    double largest = 0.0;
-    for (std::size_t n = 0; n < values.size(); ++n) largest = std::max(largest, std::abs(values[n] - expected[n]));
+    const double largest = test::largest_difference(values, expected);
     EXPECT_LT(largest, 1e-9) << exponent;
     Rule rule;
     rule.threshold = 0.3;

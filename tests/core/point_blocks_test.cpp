@@ -13,6 +13,7 @@
 #include "core/evaluation/winding_number.h"
 #include "core/far/polynomial_kernel.h"
 #include "core/mesh/weld.h"
+#include "tests/support/differences.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -82,7 +83,7 @@ TEST(PointBlocksTest, ValuesAreWithinTheToleranceOfTheDirectSum) {
       EXPECT_GE(blocks.terms().far, points.size() / 2);  // the polynomial of each that is not outside
       double largest = 0.0;
       for (std::size_t n = 0; n < values.size(); ++n) {
-        largest = std::max(largest, std::abs(values[n] - direct[n]));
+        largest = test::larger_difference(largest, std::abs(values[n] - direct[n]));
         EXPECT_EQ(values[n] > 0.5, direct[n] > 0.5);
       }
       EXPECT_LE(largest, tolerance);

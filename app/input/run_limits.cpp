@@ -9,6 +9,7 @@
 #include "app/process/limits.h"
 #include "app/process/messages.h"
 #include "app/process/signals.h"
+#include "core/crossings/ray_caster.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -51,6 +52,8 @@ void rethrow_as_limit(const std::string& mesh, const RunLimits* limits) {
   } catch (const std::bad_alloc&) {
     throw LimitError(limits ? out_of_memory_text(mesh, limits->memory()) : mesh + ": out of memory");
   } catch (const ThreadsUnavailable& error) {
+    throw UnavailableError(mesh + ": " + error.what());
+  } catch (const EmbreeUnavailable& error) {
     throw UnavailableError(mesh + ": " + error.what());
   }
 }

@@ -25,7 +25,7 @@ class RunLimits {
 };
 
 // What the machine lacks is a limit of the run: throws LimitError that names `mesh` and the limit (nullptr: unknown
-// yet) where the exception being handled is of memory or threads, and that exception again where it is not.
+// yet) where the exception being handled is of memory, threads or Embree, and that exception again where it is not.
 [[noreturn]] void rethrow_as_limit(const std::string& mesh, const RunLimits* limits);
 
 // body(limits), which are those of `options`.

@@ -3,11 +3,18 @@
 
 #include <cstdint>
 #include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
 
 namespace raycone {
+
+// Embree is not installed, or cannot be loaded.
+class EmbreeUnavailable : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 // Embree traverses boxes in float, nothing else: whether a candidate is crossed is decided by
 // core/crossings/crossings.h on the double coordinates. Taking Embree's own hits would be wrong by 1 at some rays,
@@ -15,7 +22,7 @@ namespace raycone {
 class RayCaster {
  public:
   // Builds the acceleration structure. `mesh` must outlive the RayCaster and have at least one triangle. Throws
-  // std::bad_alloc, or std::runtime_error with the number of Embree's error.
+  // std::bad_alloc, EmbreeUnavailable, or std::runtime_error with the number of Embree's error.
   explicit RayCaster(const TriangleMesh& mesh);
   ~RayCaster();
   RayCaster(RayCaster&&) noexcept;

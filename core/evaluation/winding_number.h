@@ -98,7 +98,7 @@ struct EvaluatorOptions {
 };
 
 // What uses threads throws ThreadsUnavailable (core/machine/threads.h) where none can be started, and with
-// RayEngine::kEmbree std::runtime_error where Embree fails.
+// RayEngine::kEmbree std::runtime_error where Embree fails, or cannot be loaded.
 class WindingNumberEvaluator {
  public:
   // Prepares what depends on the mesh alone, except what prepare_points() does. Preconditions: `mesh` is welded

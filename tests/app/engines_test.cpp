@@ -2,6 +2,8 @@
 // compared in tests/shared_meshes_test.py.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -79,6 +81,25 @@ TEST_F(Engines, OfOtherNamesAreUsageErrors) {
     EXPECT_EQ(result.status, 1);
     EXPECT_NE(result.err.find("processor"), std::string::npos) << result.err;
   }
+}
+
+// Embree is a file that only --engine embree reads: what cannot be loaded in its place disturbs no other run.
+TEST_F(Engines, WithoutEmbreeOnlyThatOneIsRefused) {
+  write_text(cube_, kCube);
+  const std::string directory = dir_ / "broken";
+  std::filesystem::create_directory(directory);
+  for (const char* const name : {"/libembree3.so.3", "/libembree4.so.4"}) write_text(directory + name, "");
+  const CommandOptions options{.environment = {{"LD_LIBRARY_PATH", directory}}};
+  const std::vector<std::string> words{"lattice", cube_, "-o", "-", "--resolution", "3"};
+  EXPECT_EQ(run_raycone(words, options).status, 0);
+  std::vector<std::string> by_embree = words;
+  by_embree.insert(by_embree.end(), {"--engine", "embree"});
+  EXPECT_EQ(run_raycone(by_embree).status, 0);
+  const CommandResult refused = run_raycone(by_embree, options);
+  EXPECT_EQ(refused.status, 4);
+  EXPECT_EQ(refused.out, "");
+  EXPECT_EQ(std::ranges::count(refused.err, '\n'), 1) << refused.err;
+  EXPECT_NE(refused.err.find("cube.obj: cannot load Embree: "), std::string::npos) << refused.err;
 }
 
 }  // namespace

@@ -137,6 +137,7 @@ TEST_F(BatchStale, GridsAreKnownByWhatTheyHold) {
   make_grid("4");
   EXPECT_EQ(like(grid, {"--dry-run"}).out, "") << "another time stamp, but the same content";
   write_text(mesh, "broken");
+  fs::last_write_time(grid, fs::file_time_type::clock::now());  // long ago, where runs are slow
   EXPECT_EQ(like(grid, {}).status, 5);
   age(grid);
   EXPECT_EQ(like(grid, {"--dry-run"}).out, mesh + "\toptions changed\n") << "it had just been made";

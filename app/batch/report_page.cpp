@@ -131,6 +131,7 @@ std::map<std::string, std::size_t> count_warnings(const BatchRecords& records) {
   std::map<std::string, std::size_t> counts;
   for (const auto& [mesh, record] : records) {
     std::istringstream names(record.row.warnings);
+    names.exceptions(std::ios_base::badbit);  // lest it take a lack of memory for its end
     for (std::string name; names >> name;) ++counts[name];
   }
   return counts;

@@ -30,22 +30,6 @@ namespace {
   throw LimitError(path + ": larger than " + std::to_string(max_bytes) + " bytes, expected a smaller file");
 }
 
-void add(sha256_ctx& context, std::string_view bytes) {
-  sha256_update(&context, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
-}
-
-std::string digest(sha256_ctx& context) {
-  std::array<std::uint8_t, SHA256_DIGEST_SIZE> bytes{};
-  sha256_digest(&context, bytes.size(), bytes.data());
-  constexpr char kHexDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const std::uint8_t byte : bytes) {
-    text += kHexDigits[byte >> 4];
-    text += kHexDigits[byte & 15];
-  }
-  return text;
-}
-
 }  // namespace
 
 std::string read_file(const std::string& path, std::uint64_t max_bytes) {
@@ -78,23 +62,44 @@ bool file_starts_with(const std::string& path, std::string_view bytes) {
   return file && first == bytes;
 }
 
-std::string sha256(std::string_view bytes) {
+struct Sha256::State {
   sha256_ctx context;
-  sha256_init(&context);
-  add(context, bytes);
-  return digest(context);
+};
+
+Sha256::Sha256() : state_(std::make_unique<State>()) { sha256_init(&state_->context); }
+Sha256::~Sha256() = default;
+
+void Sha256::add(std::string_view bytes) {
+  sha256_update(&state_->context, bytes.size(), reinterpret_cast<const std::uint8_t*>(bytes.data()));
+}
+
+std::string Sha256::digest() {
+  std::array<std::uint8_t, SHA256_DIGEST_SIZE> bytes{};
+  sha256_digest(&state_->context, bytes.size(), bytes.data());
+  constexpr char kHexDigits[] = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : bytes) {
+    text += kHexDigits[byte >> 4];
+    text += kHexDigits[byte & 15];
+  }
+  return text;
+}
+
+std::string sha256(std::string_view bytes) {
+  Sha256 hash;
+  hash.add(bytes);
+  return hash.digest();
 }
 
 std::string sha256_of_file(const std::string& path) {
   const std::unique_ptr<ByteSource> source = open_source(path);
-  sha256_ctx context;
-  sha256_init(&context);
+  Sha256 hash;
   constexpr std::size_t kBlock = std::size_t{1} << 20;
   const auto block = std::make_unique_for_overwrite<char[]>(kBlock);
   for (;;) {
     const std::size_t count = source->read(block.get(), kBlock);
-    if (count == 0) return digest(context);
-    add(context, {block.get(), count});
+    if (count == 0) return hash.digest();
+    hash.add({block.get(), count});
   }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -18,7 +19,23 @@ namespace raycone {
 // Whether `path` is a regular file that can be read and begins with these bytes.
 [[nodiscard]] bool file_starts_with(const std::string& path, std::string_view bytes);
 
-// SHA-256 as 64 lower-case hexadecimal digits.
+// SHA-256, of bytes that come one after the other.
+class Sha256 {
+ public:
+  Sha256();
+  ~Sha256();
+
+  // Needs no memory.
+  void add(std::string_view bytes);
+  // Of all that was added: 64 lower-case hexadecimal digits. Begins anew.
+  [[nodiscard]] std::string digest();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+// As Sha256::digest().
 [[nodiscard]] std::string sha256(std::string_view bytes);
 
 // The same of a file of any size, in little memory. Throws InputError.

@@ -129,6 +129,7 @@ const Member& root_member() {
     for (const Row& row : kRows) {
       Member* at = &tree;
       std::istringstream path(row.path);
+      path.exceptions(std::ios_base::badbit);  // lest it take a lack of memory for its end
       for (std::string key; std::getline(path, key, '.');) at = &member_of(*at, key);
       at->row = row;
     }

@@ -9,7 +9,8 @@
 
 namespace raycone::vdb {
 
-// Passes all bytes on and hashes those behind the file header.
+// Passes all bytes on and hashes those behind the file header. Needs no memory to do so: what a stream's buffer throws
+// the stream keeps to itself, and nothing that follows is written.
 class HashingBuffer final : public std::streambuf {
  public:
   // The archive's identifier, 36 characters that OpenVDB draws at random, is the end of the file header.
@@ -20,8 +21,7 @@ class HashingBuffer final : public std::streambuf {
 
   // An identifier that depends on nothing but the bytes written.
   [[nodiscard]] std::string identifier() {
-    fold();
-    std::string text = hash_.substr(0, 32);
+    std::string text = hash_.digest().substr(0, 32);
     for (const std::size_t position : {8U, 13U, 18U, 23U}) text.insert(position, 1, '-');
     return text;
   }
@@ -32,10 +32,9 @@ class HashingBuffer final : public std::streambuf {
     return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
   }
   std::streamsize xsputn(const char* data, std::streamsize size) override {
-    if (passed_ >= kIdentifierOffset + kIdentifierSize) pending_.append(data, static_cast<std::size_t>(size));
-    passed_ += static_cast<std::size_t>(size);
-    constexpr std::size_t kFoldSize = std::size_t{1} << 20;
-    if (pending_.size() >= kFoldSize) fold();
+    const auto count = static_cast<std::size_t>(size);
+    if (passed_ >= kIdentifierOffset + kIdentifierSize) hash_.add({data, count});
+    passed_ += count;
     return target_.sputn(data, size);
   }
   int sync() override { return target_.pubsync(); }
@@ -47,15 +46,9 @@ class HashingBuffer final : public std::streambuf {
   }
 
  private:
-  void fold() {
-    hash_ = sha256(hash_ + pending_);
-    pending_.clear();
-  }
-
   std::streambuf& target_;
   std::size_t passed_ = 0;
-  std::string pending_;
-  std::string hash_;
+  Sha256 hash_;
 };
 
 }  // namespace raycone::vdb

@@ -57,6 +57,7 @@ openvdb::math::MapBase::Ptr map_of(const PlacedLattice& lattice) {
 openvdb::math::Transform::Ptr transform_of(const PlacedLattice& lattice) {
   const openvdb::math::MapBase::Ptr map = map_of(lattice);
   std::stringstream bytes;
+  bytes.exceptions(std::ios_base::badbit);  // lest it keep a lack of memory to itself
   openvdb::writeString(bytes, map->type());
   map->write(bytes);
   openvdb::io::setCurrentVersion(bytes);

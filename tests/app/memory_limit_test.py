@@ -106,6 +106,30 @@ def near_limits(mesh, out, count):
     return [Run("near limits", words, f"{(60 << 10) + (10 << 10) * n // count}k", 2) for n in range(count)]
 
 
+def check_bytes_near_limits(mesh, out):
+    """Whatever a limit is, a run that says that it succeeded has written all: where memory ends while the file is written, too."""
+    words = ["lattice", mesh, "-o", out + ".vdb", "--field", "sdf", "--resolution", "160"]
+    contents = lambda: open(out + ".vdb", "rb").read()
+    enough = 1 << 10  # megabytes
+    step = 256  # kilobytes
+    if Run("bytes", words, f"{enough}M", 1).status != 0:
+        return ["bytes: too little memory"]
+    whole, low, high = contents(), 0, (enough << 10) // step
+    while high - low > 1:
+        middle = (low + high) // 2
+        if Run("bytes", words, f"{middle * step}k", 1).status == 0:
+            high = middle
+        else:
+            low = middle
+    wrong, made = [], 0
+    for n in range(high - 4, high + 20):
+        run = Run("bytes", words, f"{n * step}k", 1)
+        made += run.status == 0
+        if not run.is_right() or run.status == 0 and contents() != whole:
+            wrong.append(f"{run} {run.message}, {len(contents())} bytes of {len(whole)}")
+    return wrong if made > 10 else wrong + [f"bytes: only {made} runs from {high * step} kB on have succeeded"]
+
+
 def check_batch(meshes, limit, out, runs):
     """Per worker, as its row says; a mesh that does not fit costs only its row."""
     process = subprocess.run([RAYCONE, "batch", *meshes, "--out-dir", out, "--format", "npy", "--resolution", "64", "--quiet",
@@ -145,6 +169,7 @@ def main():
         count = [len(runs)]
         wrong = [f"{run} {run.message}" for run in runs if not run.is_right()]
         wrong += check_told_at_once(teapot, os.path.join(directory, "out"))
+        wrong += check_bytes_near_limits(os.path.join(MESHES, "cube.obj"), os.path.join(directory, "out"))
         for limit in LIMITS:
             wrong += check_batch([sheets, sphere, teapot], limit, os.path.join(directory, "batch" + limit), count)
     nearest = sorted(runs, key=lambda run: -run.share)

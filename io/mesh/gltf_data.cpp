@@ -115,6 +115,7 @@ GltfData::GltfData(const NamedBytes& source, GltfDocument document, std::optiona
       buffers_(std::move(document.buffers)),
       strides_(std::move(document.strides)),
       sparse_(std::move(document.sparse)),
+      requires_draco_(std::ranges::count(model_->extensionsRequired, kGltfDraco) > 0),
       binary_chunk_(binary_chunk),
       companions_(companions),
       loaded_(buffers_.size()) {
@@ -298,12 +299,10 @@ GltfData::Elements GltfData::elements(std::size_t accessor, int view_index, std:
 bool GltfData::is_compressed(const tinygltf::Primitive& primitive, const std::string& place) const {
   const auto extension = primitive.extensions.find(kGltfDraco);
   if (extension == primitive.extensions.end()) return false;
-  const auto& required = model_->extensionsRequired;
-  const bool is_required = std::find(required.begin(), required.end(), kGltfDraco) != required.end();
   const bool has_data = std::all_of(primitive.attributes.begin(), primitive.attributes.end(), [&](const auto& item) {
     return model_->accessors[to_size(item.second)].bufferView >= 0;
   });
-  if (!is_required && has_data) return false;
+  if (!requires_draco_ && has_data) return false;
   const tinygltf::Value& draco = extension->second;
   if (!draco.Has("bufferView") || !draco.Get("attributes").Has("POSITION")) {
     throw InputError(place + "has no data but those of the extension " + kGltfDraco +

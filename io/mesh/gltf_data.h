@@ -72,6 +72,7 @@ class GltfData {
   std::vector<GltfBuffer> buffers_;
   std::vector<std::uint64_t> strides_;  // of the buffer views
   std::vector<GltfSparse> sparse_;      // of the accessors
+  bool requires_draco_;                 // by extensionsRequired, which may be long
   std::optional<std::string_view> binary_chunk_;
   std::vector<FileRead>* companions_;
   std::vector<std::optional<std::string_view>> loaded_;  // buffers

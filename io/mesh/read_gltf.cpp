@@ -253,7 +253,7 @@ std::vector<int> shown_roots(const tinygltf::Model& model, const std::vector<std
   return model.scenes[to_size(scene)].nodes;
 }
 
-// Calls visit(node, placement) for the scene's visible nodes, parents before children.
+// Calls visit(number, placement) for the scene's visible nodes, parents before children.
 template <class Visit>
 void visit_scene(const tinygltf::Model& model, const std::string& file, Visit visit) {
   const std::vector<std::size_t> parents = parent_counts(model, file);
@@ -273,11 +273,12 @@ void visit_scene(const tinygltf::Model& model, const std::string& file, Visit vi
       continue;
     }
     if (++visits > max_visits) throw LimitError(file + ": nodes with several parents make too many copies");
-    const tinygltf::Node& node = model.nodes[to_size(level.nodes.front())];
+    const std::size_t number = to_size(level.nodes.front());
+    const tinygltf::Node& node = model.nodes[number];
     level.nodes = level.nodes.subspan(1);
     if (!is_visible(node)) continue;
     const AffineMap placement = has_transform(node) ? composed(level.outer, transform_of(node, "")) : level.outer;
-    visit(node, placement);
+    visit(number, placement);
     if (!node.children.empty()) levels.push_back({node.children, placement});
   }
 }
@@ -288,8 +289,14 @@ struct Instance {
   AffineMap placement;
 };
 
-bool has_weights(const std::vector<double>& weights) {
-  return std::any_of(weights.begin(), weights.end(), [](double weight) { return weight != 0.0; });
+// Which of these nodes or meshes give a morph target weight. Told once for all, however often the scene shows them.
+template <class Part>
+std::vector<bool> have_weights(const std::vector<Part>& parts) {
+  std::vector<bool> have;
+  for (const Part& part : parts) {
+    have.push_back(std::ranges::any_of(part.weights, [](double weight) { return weight != 0.0; }));
+  }
+  return have;
 }
 
 // All instances of the scene shown, those of one mesh together.
@@ -301,11 +308,13 @@ std::vector<Instance> instances_of(const tinygltf::Model& model, const std::stri
     omissions.without_nodes = instances.size();
     return instances;
   }
-  visit_scene(model, file, [&](const tinygltf::Node& node, const AffineMap& placement) {
+  const std::vector<bool> morphing_nodes = have_weights(model.nodes), morphing_meshes = have_weights(model.meshes);
+  visit_scene(model, file, [&](std::size_t number, const AffineMap& placement) {
+    const tinygltf::Node& node = model.nodes[number];
     if (node.mesh < 0) return;
     const bool skinned = node.skin >= 0;
     omissions.skinned += skinned;
-    omissions.morphed += has_weights(node.weights) || has_weights(model.meshes[to_size(node.mesh)].weights);
+    omissions.morphed += morphing_nodes[number] || morphing_meshes[to_size(node.mesh)];
     // The joints alone place a skinned mesh, never its node (section 3.7.3.3); at rest they leave it as it is.
     instances.push_back({to_size(node.mesh), skinned ? AffineMap{} : placement});
   });

@@ -115,22 +115,32 @@ const std::vector<FieldKind> kAllKinds{FieldKind::kReal,  FieldKind::kDensity, F
                                        FieldKind::kBound, FieldKind::kCount,   FieldKind::kFlag,     FieldKind::kLabel};
 
 TEST_F(DiskSpace, IsWhatLatticesTake) {
-  for (const FieldFormat format :
-       {FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kNpz, FieldFormat::kVti, FieldFormat::kNifti}) {
+  for (const FieldFormat format : {FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kNpz, FieldFormat::kVti,
+                                   FieldFormat::kNrrd, FieldFormat::kNifti}) {
+    const bool is_image = format == FieldFormat::kNrrd || format == FieldFormat::kNifti;
     for (const std::optional<Precision> precision : kAllPrecisions) {
       const bool has_halves = format == FieldFormat::kNpy || format == FieldFormat::kNpz;
       if (precision == Precision::kHalf && !has_halves) continue;
       for (const FieldKind kind : kAllKinds) {
-        if (format == FieldFormat::kNifti && kind == FieldKind::kVector) continue;
+        if (is_image && kind == FieldKind::kVector) continue;
         OutputDescription description = described({kind}, precision);
         description.packs_flags = format == FieldFormat::kNpz;  // others are never asked to
         expect_enough_of_lattice(
             format, description,
             std::to_string(static_cast<int>(format)) + " " + std::to_string(static_cast<int>(kind)));
       }
-      const bool has_several = format != FieldFormat::kNpy && format != FieldFormat::kNifti;
+      const bool has_several = format != FieldFormat::kNpy && !is_image;
       if (has_several) expect_enough_of_lattice(format, described(kAllKinds, precision), "all kinds");
     }
+  }
+}
+
+// Zeros, which these are, would be refused for want of room that they do not need.
+TEST_F(DiskSpace, IsNothingOfCompressedLattices) {
+  OutputDescription description = described({FieldKind::kReal}, std::nullopt);
+  description.compress = true;
+  for (const FieldFormat format : {FieldFormat::kNrrd, FieldFormat::kNiftiGz}) {
+    EXPECT_EQ(least_lattice_file(format, description, kSamples), 0U);
   }
 }
 

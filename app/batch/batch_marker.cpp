@@ -46,7 +46,7 @@ bool is_at_work(const TemporaryName& name, const std::string& marker, const std:
 }  // namespace
 
 BatchMarker::BatchMarker(const std::string& directory, const std::string& options)
-    : file_(mark(directory, suffix_for(options))), descriptor_(file_.take_descriptor()) {
+    : file_(mark(directory, suffix_for(options))), descriptor_(file_.take_descriptor().release()) {
   std::error_code error;
   for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
     const std::string path = entry->path().string();

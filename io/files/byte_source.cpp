@@ -9,6 +9,7 @@
 #include <cerrno>
 #include <stdexcept>
 
+#include "io/files/descriptor.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
 
@@ -25,16 +26,10 @@ class FileSource final : public ByteSource {
  public:
   explicit FileSource(const std::string& path) : name_(path), descriptor_(STDIN_FILENO) {
     if (path == "-") return;
-    do {
-      descriptor_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    } while (descriptor_ < 0 && errno == EINTR);
-    if (descriptor_ < 0) fail_to_read(name_, errno);
+    opened_ = open_file(path, O_RDONLY);
+    if (!opened_) fail_to_read(name_, errno);
+    descriptor_ = opened_.number();
   }
-  ~FileSource() override {
-    if (descriptor_ != STDIN_FILENO) close(descriptor_);
-  }
-  FileSource(const FileSource&) = delete;
-  FileSource& operator=(const FileSource&) = delete;
 
   std::size_t read(char* bytes, std::size_t size) override {
     for (;;) {
@@ -72,6 +67,7 @@ class FileSource final : public ByteSource {
 
  private:
   std::string name_;
+  Descriptor opened_;  // none where it is standard input, which stays open
   int descriptor_;
 };
 

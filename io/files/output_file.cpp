@@ -14,6 +14,7 @@
 #include <system_error>
 #include <utility>
 
+#include "io/files/descriptor.h"
 #include "io/files/file_buffer.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
@@ -31,23 +32,6 @@ void give_back_room(int descriptor) {
   struct stat status {};
   if (fstat(descriptor, &status) != 0) return;
   [[maybe_unused]] const int ignored = ftruncate(descriptor, status.st_size);
-}
-
-bool write_to_disk(int descriptor) {
-  int result = -1;
-  do {
-    result = fsync(descriptor);
-  } while (result != 0 && errno == EINTR);
-  // Some network and user-space file systems cannot sync, and say so in these two ways.
-  return result == 0 || errno == EINVAL || errno == ENOSYS;
-}
-
-int open_directory(const std::string& path) {
-  int descriptor = -1;
-  do {
-    descriptor = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  } while (descriptor < 0 && errno == EINTR);
-  return descriptor;
 }
 
 // Gives the open file the permissions of the file that it will replace, if there is one.
@@ -74,7 +58,6 @@ bool rename_to_new(const std::string& from, const std::string& to) {
 struct OutputFile::State {
   State(const std::string& path, bool keep_existing, OutputGroup* with)
       : name(path), no_clobber(keep_existing), group(with) {}
-  ~State();
 
   [[noreturn]] void fail(const std::string& what) const {
     throw OutputError((name == "-" ? "standard output" : name) + ": " + what);
@@ -97,16 +80,11 @@ struct OutputFile::State {
   std::string target;                      // `name` with links followed, where that is a regular file
   std::optional<TemporaryFile> temporary;  // absent where written to directly
   bool has_reserved = false;
-  int descriptor = -1;
-  int directory = -1;  // of `target`, to be synced; -1 where it may be written to, but not opened
+  Descriptor file;       // what is written to
+  Descriptor directory;  // of `target`, to be synced; none where it may be written to, but not opened
   std::optional<FileBuffer> buffer;
   std::ostream stream{nullptr};
 };
-
-OutputFile::State::~State() {
-  if (descriptor >= 0) close(descriptor);
-  if (directory >= 0) close(directory);
-}
 
 void OutputFile::State::open() {
   target = follow_links(name);
@@ -128,23 +106,21 @@ void OutputFile::State::open() {
   } else {
     open_temporary();
   }
-  buffer.emplace(descriptor);
+  buffer.emplace(file.number());
   stream.rdbuf(&*buffer);
 }
 
 // A duplicate, so that its last error is told by close() as well, and the original stays open for others.
 void OutputFile::State::open_descriptor(int number) {
   constexpr int kLowest = 3;
-  descriptor = fcntl(number, F_DUPFD_CLOEXEC, kLowest);
-  if (descriptor < 0) fail_writing(errno);
-  if ((fcntl(descriptor, F_GETFL) & O_ACCMODE) == O_RDONLY) fail_writing(EBADF);
+  file = Descriptor(fcntl(number, F_DUPFD_CLOEXEC, kLowest));
+  if (!file) fail_writing(errno);
+  if ((fcntl(file.number(), F_GETFL) & O_ACCMODE) == O_RDONLY) fail_writing(EBADF);
 }
 
 void OutputFile::State::open_special() {
-  do {
-    descriptor = ::open(name.c_str(), O_WRONLY | O_NOCTTY | O_CLOEXEC);
-  } while (descriptor < 0 && errno == EINTR);
-  if (descriptor < 0) fail_writing(errno);
+  file = open_file(name, O_WRONLY | O_NOCTTY);
+  if (!file) fail_writing(errno);
 }
 
 void OutputFile::State::open_temporary() {
@@ -152,10 +128,10 @@ void OutputFile::State::open_temporary() {
   const auto fail_here = [&](int error) {
     fail("cannot create a file in " + path + ": " + std::generic_category().message(error));
   };
-  directory = open_directory(path);
-  if (directory < 0 && errno != EACCES) fail_here(errno);
+  directory = open_file(path, O_RDONLY | O_DIRECTORY);
+  if (!directory && errno != EACCES) fail_here(errno);
   try {
-    descriptor = temporary.emplace(path).take_descriptor();
+    file = temporary.emplace(path).take_descriptor();
   } catch (const std::system_error& error) {
     fail_here(error.code().value());
   }
@@ -170,7 +146,7 @@ PlacedFile OutputFile::State::put_in_place() {
   if (!renamed && errno == EEXIST) fail("already exists (--no-clobber)");
   if (!renamed) fail_writing(errno);
   temporary->renamed();
-  if (directory >= 0 && !write_to_disk(directory)) fail_writing(errno);
+  if (directory && !write_to_disk(directory)) fail_writing(errno);
   return {name, static_cast<std::uint64_t>(status.st_size), nanoseconds(status.st_mtim)};
 }
 
@@ -187,7 +163,7 @@ OutputFile::~OutputFile() = default;
 void OutputFile::reserve(std::uint64_t bytes) {
   struct stat status {};
   struct statvfs disk {};
-  const int descriptor = state_->descriptor;
+  const int descriptor = state_->file.number();
   if (fstat(descriptor, &status) != 0 || !S_ISREG(status.st_mode)) return;
   const bool told = fstatvfs(descriptor, &disk) == 0 && disk.f_blocks > 0;
   const double room = static_cast<double>(disk.f_bavail) * static_cast<double>(disk.f_frsize);
@@ -231,12 +207,11 @@ void OutputFile::commit() {
   flush();
   State& state = *state_;
   if (state.temporary) {
-    if (state.has_reserved) give_back_room(state.descriptor);
-    if (!take_over_mode(state.descriptor, state.target)) state.fail_writing(errno);
-    if (!write_to_disk(state.descriptor)) state.fail_writing(errno);
+    if (state.has_reserved) give_back_room(state.file.number());
+    if (!take_over_mode(state.file.number(), state.target)) state.fail_writing(errno);
+    if (!write_to_disk(state.file)) state.fail_writing(errno);
   }
-  const int descriptor = std::exchange(state.descriptor, -1);
-  if (close(descriptor) != 0 && errno != EINTR) state.fail_writing(errno);
+  if (close(state.file.release()) != 0 && errno != EINTR) state.fail_writing(errno);
   if (!state.temporary) return;
   if (state.group) {
     state.group->waiting_.push_back(state_);

@@ -172,16 +172,16 @@ TemporaryFile::TemporaryFile(const std::string& directory, const std::string& su
     path_ = directory + '/' + next_name(suffix).text();
     Entry::forget(entry_);
     entry_ = Entry::remember(path_);  // before the file exists: a signal may arrive at any time
-    descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, kMode);
-  } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
-  if (descriptor_ >= 0) return;
+    descriptor_ = open_file(path_, O_WRONLY | O_CREAT | O_EXCL, kMode);
+  } while (!descriptor_ && errno == EEXIST);
+  if (descriptor_) return;
   const int error = errno;
   Entry::forget(entry_);
   throw std::system_error(error, std::generic_category());
 }
 
 TemporaryFile::~TemporaryFile() {
-  if (descriptor_ >= 0) close(descriptor_);
+  descriptor_ = Descriptor();  // first: NFS keeps files that are open under other names
   if (!path_.empty()) unlink(path_.c_str());
   Entry::forget(entry_);
 }

@@ -10,6 +10,8 @@
 #include <string_view>
 #include <utility>
 
+#include "io/files/descriptor.h"
+
 namespace raycone {
 
 inline constexpr std::size_t kHexadecimalDigits = 16;  // of hashes in names
@@ -51,8 +53,8 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   [[nodiscard]] const std::string& path() const { return path_; }
-  // Open for writing; the caller's to close from now on.
-  [[nodiscard]] int take_descriptor() { return std::exchange(descriptor_, -1); }
+  // Open for writing. Once.
+  [[nodiscard]] Descriptor take_descriptor() { return std::move(descriptor_); }
   // It has got another name, and is no longer temporary.
   void renamed();
 
@@ -62,7 +64,7 @@ class TemporaryFile {
 
   std::string path_;
   Entry* entry_ = nullptr;  // in the table for signal handlers
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 // Removes the temporary files in `directory` that is_abandoned() tells of, and nothing else. Ignores errors.

@@ -5,7 +5,6 @@
 #include <sys/file.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <array>
 #include <atomic>
@@ -19,6 +18,7 @@
 #include <thread>
 
 #include "io/fields/format_writers.h"
+#include "io/files/descriptor.h"
 #include "io/files/file_error.h"
 #include "io/vdb/read_vdb.h"
 #include "io/vdb/vdb_module.h"
@@ -69,20 +69,15 @@ class LoadingTurn {
     constexpr int kTries = 1000;
     rlimit limit{};
     if (getrlimit(RLIMIT_NPROC, &limit) != 0 || limit.rlim_cur >= kFewThreads) return;
-    descriptor_ = open(module_path().c_str(), O_RDONLY | O_CLOEXEC);
-    for (int n = 0; descriptor_ >= 0 && n < kTries && flock(descriptor_, LOCK_EX | LOCK_NB) != 0; ++n) {
+    module_ = open_file(module_path(), O_RDONLY);
+    for (int n = 0; module_ && n < kTries && flock(module_.number(), LOCK_EX | LOCK_NB) != 0; ++n) {
       if (errno != EWOULDBLOCK && errno != EINTR) return;  // a file system without locks
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
-  ~LoadingTurn() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  LoadingTurn(const LoadingTurn&) = delete;
-  LoadingTurn& operator=(const LoadingTurn&) = delete;
 
  private:
-  int descriptor_ = -1;
+  Descriptor module_;  // locked
 };
 
 // Where threads or memory are short, the libraries that OpenVDB brings abort or wait for ever while they are loaded,

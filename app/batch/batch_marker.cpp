@@ -46,7 +46,7 @@ bool is_at_work(const TemporaryName& name, const std::string& marker, const std:
 }  // namespace
 
 BatchMarker::BatchMarker(const std::string& directory, const std::string& options)
-    : file_(mark(directory, suffix_for(options))), descriptor_(file_.take_descriptor().release()) {
+    : file_(mark(directory, suffix_for(options))), descriptor_(file_.take_descriptor()) {
   std::error_code error;
   for (fs::directory_iterator entry(directory, error), end; !error && entry != end; entry.increment(error)) {
     const std::string path = entry->path().string();
@@ -55,19 +55,16 @@ BatchMarker::BatchMarker(const std::string& directory, const std::string& option
     if (!is_at_work(*name, path, file_.path())) {
       unlink(path.c_str());
     } else if (name->suffix != suffix_for(options)) {
-      close(descriptor_);
       throw OutputError(directory + ": a batch with other options, or of another version, runs here (process " +
                         std::to_string(name->process) + "), expected to wait for it or to have another --out-dir");
     }
   }
 }
 
-BatchMarker::~BatchMarker() { close(descriptor_); }
-
 void BatchMarker::renew() {
   const auto now = std::chrono::steady_clock::now();
   if (now - renewed_ < kBetweenSigns) return;
-  futimens(descriptor_, nullptr);
+  futimens(descriptor_.number(), nullptr);
   renewed_ = now;
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string>
 
+#include "io/files/descriptor.h"
 #include "io/files/temporary_file.h"
 
 namespace raycone {
@@ -16,16 +17,13 @@ class BatchMarker {
   // Throws OutputError where a batch with other `options` runs in `directory`. Of two that start at once at least one
   // is refused. One on another host has ended when it has given no sign of life for ten minutes.
   BatchMarker(const std::string& directory, const std::string& options);
-  ~BatchMarker();
-  BatchMarker(const BatchMarker&) = delete;
-  BatchMarker& operator=(const BatchMarker&) = delete;
 
   // To be called again and again: from time to time it gives a sign of life.
   void renew();
 
  private:
   TemporaryFile file_;
-  int descriptor_;
+  Descriptor descriptor_;
   std::chrono::steady_clock::time_point renewed_ = std::chrono::steady_clock::now();
 };
 

@@ -86,11 +86,11 @@ bool CsvLog::ends_within_line() const {
 
 // Where the last write(2) was cut short, because its process was killed, its line is cut off. That needs a look at the
 // whole file, as fields may hold line feeds, but only where others have written to it.
-off_t CsvLog::drop_incomplete_line(int descriptor) const {
-  const off_t size = lseek(descriptor, 0, SEEK_END);
+off_t CsvLog::drop_incomplete_line(const Descriptor& file) const {
+  const off_t size = lseek(file.number(), 0, SEEK_END);
   if (size == complete_) return size;
   const auto complete = static_cast<off_t>(parsed(text()).complete);
-  if (ftruncate(descriptor, complete) != 0) fail_writing(path_, errno);
+  if (ftruncate(file.number(), complete) != 0) fail_writing(path_, errno);
   return complete;
 }
 
@@ -98,15 +98,15 @@ std::int64_t CsvLog::modified() const { return stamp_of(path_).modified; }
 
 void CsvLog::append(const std::string& line) const {
   constexpr mode_t kMode = 0666;  // less the umask
-  const int descriptor = open(path_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, kMode);
-  if (descriptor < 0) fail_writing(path_, errno);
-  const off_t size = drop_incomplete_line(descriptor);
+  Descriptor file = open_file(path_, O_WRONLY | O_APPEND | O_CREAT, kMode);
+  if (!file) fail_writing(path_, errno);
+  const off_t size = drop_incomplete_line(file);
   const std::string text = (size == 0 ? csv_line(columns_) : "") + line;
-  const ssize_t written = write(descriptor, text.data(), text.size());
+  const ssize_t written = write(file.number(), text.data(), text.size());
   int error = written < 0 ? errno : ENOSPC;
   const bool complete = written == static_cast<ssize_t>(text.size());
-  if (!complete && written > 0 && ftruncate(descriptor, size) != 0) error = errno;
-  if (close(descriptor) != 0 && complete && errno != EINTR) fail_writing(path_, errno);
+  if (!complete && written > 0 && ftruncate(file.number(), size) != 0) error = errno;
+  if (close(file.release()) != 0 && complete && errno != EINTR) fail_writing(path_, errno);
   if (!complete) fail_writing(path_, error);
   complete_ = size + written;
 }
@@ -120,12 +120,9 @@ void CsvLog::replace(const std::vector<std::string>& lines) const {
 }
 
 void CsvLog::sync() const {
-  const int descriptor = open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return;  // there is none
-  const int result = fsync(descriptor);
-  const int error = errno;
-  close(descriptor);
-  if (result != 0 && error != EINVAL && error != ENOSYS && error != EINTR) fail_writing(path_, error);
+  const Descriptor file = open_file(path_, O_RDONLY);
+  if (!file) return;  // there is none
+  if (!write_to_disk(file)) fail_writing(path_, errno);
 }
 
 }  // namespace raycone

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "app/text/csv.h"
+#include "io/files/descriptor.h"
 
 namespace raycone {
 
@@ -40,7 +41,7 @@ class CsvLog {
   [[nodiscard]] CsvText parsed(std::string_view text) const;
   void check_rest(std::string_view rest, std::size_t line) const;
   [[nodiscard]] bool is_row(const CsvRecord& record) const;
-  off_t drop_incomplete_line(int descriptor) const;
+  off_t drop_incomplete_line(const Descriptor& file) const;
   void sync() const;
 
   std::string path_;

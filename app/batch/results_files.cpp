@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -18,6 +17,7 @@
 #include "app/process/messages.h"
 #include "app/process/signals.h"
 #include "io/files/counted.h"
+#include "io/files/descriptor.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
 
@@ -31,17 +31,15 @@ namespace fs = std::filesystem;
 // where another process does not let go; sooner where a signal waits that the supervisor holds back.
 class DirectoryLock {
  public:
-  explicit DirectoryLock(const std::string& directory)
-      : descriptor_(open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  explicit DirectoryLock(const std::string& directory) : locked_(open_file(directory, O_RDONLY | O_DIRECTORY)) {
     constexpr std::chrono::milliseconds kPause{5};
     constexpr std::chrono::seconds kMost{300}, kMostWithSignal{2};
     const auto begin = std::chrono::steady_clock::now();
-    while (descriptor_ >= 0 && flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+    while (locked_ && flock(locked_.number(), LOCK_EX | LOCK_NB) != 0) {
       if (errno == EINTR) continue;
       if (errno != EWOULDBLOCK) return;  // there are no locks
       const bool is_interrupted = interruption_waits();
       if (std::chrono::steady_clock::now() - begin >= (is_interrupted ? kMostWithSignal : kMost)) {
-        close(descriptor_);
         throw OutputError(directory + (is_interrupted ? ": interrupted while waiting for the lock of another process"
                                                       : ": is locked by another process, for 5 minutes now; end it, "
                                                         "or run this again"));
@@ -49,14 +47,9 @@ class DirectoryLock {
       std::this_thread::sleep_for(kPause);
     }
   }
-  ~DirectoryLock() {
-    if (descriptor_ >= 0) close(descriptor_);
-  }
-  DirectoryLock(const DirectoryLock&) = delete;
-  DirectoryLock& operator=(const DirectoryLock&) = delete;
 
  private:
-  int descriptor_;
+  Descriptor locked_;
 };
 
 // The names of a shard's files end so: "-3-of-8"; those of the whole batch have nothing there.

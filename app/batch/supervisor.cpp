@@ -5,7 +5,6 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -21,6 +20,7 @@
 #include "app/process/exit_code.h"
 #include "app/process/messages.h"
 #include "app/process/signals.h"
+#include "io/files/descriptor.h"
 #include "io/files/file_error.h"
 #include "io/files/file_time.h"
 #include "io/files/readable_bytes.h"
@@ -66,11 +66,10 @@ Clock::duration seconds(double count) {
 // Throws LimitError where so few are left that another worker would take those of the tables of results.
 void require_descriptors() {
   constexpr int kSpare = 12;
-  const int lowest = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
-  if (lowest >= 0) close(lowest);
+  const Descriptor lowest(fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0));
   rlimit limit{};
   getrlimit(RLIMIT_NOFILE, &limit);
-  if (lowest < 0 || limit.rlim_cur < static_cast<rlim_t>(lowest) + kSpare) throw LimitError("too few open files");
+  if (!lowest || limit.rlim_cur < static_cast<rlim_t>(lowest.number()) + kSpare) throw LimitError("too few open files");
 }
 
 // A worker and what it is doing.

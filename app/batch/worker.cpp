@@ -38,6 +38,7 @@
 #include "app/run/run_points.h"
 #include "core/machine/threads.h"
 #include "io/files/base64.h"
+#include "io/files/descriptor.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
 #include "io/files/output_file.h"
@@ -67,25 +68,23 @@ void return_unused_memory(std::uint64_t used) {
 }
 
 // The socket, out of the way of whatever reads standard input or prints.
-int take_socket() {
-  const int socket = fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
-  const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
-  dup2(nothing, STDIN_FILENO);
-  close(nothing);
+Descriptor take_socket() {
+  Descriptor socket(fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+  dup2(open_file("/dev/null", O_RDONLY).number(), STDIN_FILENO);
   dup2(STDERR_FILENO, STDOUT_FILENO);
   return socket;
 }
 
 class Connection {
  public:
-  explicit Connection(int socket) : socket_(socket) {}
+  explicit Connection(Descriptor socket) : socket_(std::move(socket)) {}
 
   // Waits; nothing at the end of the supervisor.
   std::optional<Message> receive() {
     for (;;) {
       if (std::optional<Message> message = reader_.next()) return message;
       char buffer[4096];
-      const ssize_t count = recv(socket_, buffer, sizeof buffer, 0);
+      const ssize_t count = recv(socket_.number(), buffer, sizeof buffer, 0);
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) return std::nullopt;
       reader_.add({buffer, static_cast<std::size_t>(count)});
@@ -96,7 +95,7 @@ class Connection {
   [[nodiscard]] bool send(const Message& message) const {
     const std::string frame = to_frame(message);
     for (std::size_t sent = 0; sent < frame.size();) {
-      const ssize_t count = ::send(socket_, frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL);
+      const ssize_t count = ::send(socket_.number(), frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL);
       if (count < 0 && errno == EINTR) continue;
       if (count <= 0) return false;
       sent += static_cast<std::size_t>(count);
@@ -105,7 +104,7 @@ class Connection {
   }
 
  private:
-  int socket_;
+  Descriptor socket_;
   MessageReader reader_;
 };
 

@@ -172,21 +172,18 @@ HeldSignals::HeldSignals() {
   hold(SIGXCPU);
   hold(SIGPIPE);
   pthread_sigmask(SIG_BLOCK, &held, &before_);
-  descriptor_ = signalfd(-1, &held, SFD_NONBLOCK | SFD_CLOEXEC);
-  if (descriptor_ >= 0) return;
+  descriptor_ = Descriptor(signalfd(-1, &held, SFD_NONBLOCK | SFD_CLOEXEC));
+  if (descriptor_) return;
   const int error = errno;
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
   throw LimitError("cannot wait for signals: " + std::generic_category().message(error));
 }
 
-HeldSignals::~HeldSignals() {
-  if (descriptor_ >= 0) close(descriptor_);
-  pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-}
+HeldSignals::~HeldSignals() { pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
 
 int HeldSignals::take() const {
   signalfd_siginfo info{};
-  return read(descriptor_, &info, sizeof info) == sizeof info ? static_cast<int>(info.ssi_signo) : 0;
+  return read(descriptor_.number(), &info, sizeof info) == sizeof info ? static_cast<int>(info.ssi_signo) : 0;
 }
 
 }  // namespace raycone

@@ -4,6 +4,8 @@
 #include <csignal>
 #include <string>
 
+#include "io/files/descriptor.h"
+
 namespace raycone {
 
 // Call once, first thing. Every signal that ends a process (but SIGKILL and those of real time) removes temporary files
@@ -32,13 +34,13 @@ class HeldSignals {
   HeldSignals& operator=(const HeldSignals&) = delete;
 
   // Readable when a signal waits.
-  [[nodiscard]] int descriptor() const { return descriptor_; }
+  [[nodiscard]] int descriptor() const { return descriptor_.number(); }
   // A signal that waits, or 0.
   [[nodiscard]] int take() const;
 
  private:
   sigset_t before_{};
-  int descriptor_ = -1;
+  Descriptor descriptor_;
 };
 
 }  // namespace raycone

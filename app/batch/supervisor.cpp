@@ -19,6 +19,7 @@
 #include "app/batch/worker_process.h"
 #include "app/process/exit_code.h"
 #include "app/process/messages.h"
+#include "app/process/own_process.h"
 #include "app/process/signals.h"
 #include "io/files/descriptor.h"
 #include "io/files/file_error.h"

@@ -1,12 +1,10 @@
 #include "app/batch/worker_process.h"
 
 #include <signal.h>
-#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <chrono>
 #include <exception>
@@ -16,22 +14,18 @@
 #include <utility>
 
 #include "app/batch/worker.h"
-#include "app/process/exit_code.h"
+#include "app/process/own_process.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
 namespace {
 
-// In the child: async-signal-safe calls only.
-[[noreturn]] void become_worker(int socket, pid_t parent, char* const* words) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (getppid() != parent) _exit(1);  // the supervisor died before this could notice
-  dup2(socket, STDIN_FILENO);
+// In the child. Signals that a batch holds back are its supervisor's.
+void prepare_worker(const Descriptor& socket) {
+  dup2(socket.number(), STDIN_FILENO);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
-  execv("/proc/self/exe", words);
-  _exit(errno == ENOMEM || errno == EAGAIN ? kNotStarted : kNotExecuted);
 }
 
 }  // namespace
@@ -41,36 +35,28 @@ WorkerProcess::WorkerProcess() {
   if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
     throw LimitError("cannot connect to a worker: " + std::generic_category().message(errno));
   }
-  std::string program = "raycone";
-  std::string command = kWorkerCommand;
-  const std::array<char*, 3> words{program.data(), command.data(), nullptr};
-  const pid_t parent = getpid();
-  process_ = fork();
-  if (process_ == 0) become_worker(ends[1], parent, words.data());
-  const int error = errno;
-  close(ends[1]);
-  socket_ = ends[0];
-  if (process_ > 0) return;
-  close(socket_);
-  throw LimitError("cannot start a worker: " + std::generic_category().message(error));
+  socket_ = Descriptor(ends[0]);
+  const Descriptor others(ends[1]);
+  try {
+    process_ = start_anew({kWorkerCommand}, [&others] { prepare_worker(others); });
+  } catch (const std::system_error& error) {
+    throw LimitError("cannot start a worker: " + error.code().message());
+  }
 }
 
-WorkerProcess::~WorkerProcess() {
-  end();
-  close(socket_);
-}
+WorkerProcess::~WorkerProcess() { end(); }
 
 bool WorkerProcess::send(const Message& message) const {
   char answer = 0;  // none is due: what can be read is the end
-  const ssize_t count = recv(socket_, &answer, sizeof answer, MSG_PEEK | MSG_DONTWAIT);
+  const ssize_t count = recv(socket_.number(), &answer, sizeof answer, MSG_PEEK | MSG_DONTWAIT);
   if (count == 0 || (count < 0 && errno != EAGAIN)) return false;
   const std::string frame = to_frame(message);  // an idle worker's socket has room for it
-  return ::send(socket_, frame.data(), frame.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(frame.size());
+  return ::send(socket_.number(), frame.data(), frame.size(), MSG_NOSIGNAL) == static_cast<ssize_t>(frame.size());
 }
 
 std::optional<JobResult> WorkerProcess::receive() {
   char buffer[65536];
-  const ssize_t count = recv(socket_, buffer, sizeof buffer, MSG_DONTWAIT);
+  const ssize_t count = recv(socket_.number(), buffer, sizeof buffer, MSG_DONTWAIT);
   if (count < 0 && (errno == EAGAIN || errno == EINTR)) return std::nullopt;
   if (count <= 0) {
     ended_ = true;

@@ -7,6 +7,7 @@
 
 #include "app/batch/job_result.h"
 #include "app/batch/message.h"
+#include "io/files/descriptor.h"
 
 namespace raycone {
 
@@ -21,7 +22,7 @@ class WorkerProcess {
   WorkerProcess& operator=(const WorkerProcess&) = delete;
 
   // Readable when an answer arrives, or at the worker's end.
-  [[nodiscard]] int descriptor() const { return socket_; }
+  [[nodiscard]] int descriptor() const { return socket_.number(); }
 
   // To an idle worker. False where it has ended.
   [[nodiscard]] bool send(const Message& message) const;
@@ -40,7 +41,7 @@ class WorkerProcess {
 
  private:
   pid_t process_ = -1;
-  int socket_ = -1;
+  Descriptor socket_;
   bool ended_ = false, is_damaged_ = false;
   MessageReader reader_;
 };

@@ -1,8 +1,6 @@
 #include "app/input/grid_reader.h"
 
 #include <fcntl.h>
-#include <signal.h>
-#include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -16,7 +14,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "app/process/own_process.h"
 #include "app/process/signals.h"
+#include "io/files/descriptor.h"
 #include "io/files/file_error.h"
 #include "io/vdb/read_vdb.h"
 
@@ -150,30 +150,43 @@ VolumeFacts facts_from(const std::string& path, const std::string& bytes) {
   return facts;
 }
 
-[[noreturn]] void fail(const std::string& path, const char* what) {
-  throw UnavailableError(path + ": cannot " + what + ": " + std::generic_category().message(errno));
+struct Pipe {
+  Descriptor reading, writing;
+};
+
+Pipe open_pipe(const std::string& path) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) == 0) return {Descriptor(ends[0]), Descriptor(ends[1])};
+  throw UnavailableError(path + ": cannot open a pipe: " + std::generic_category().message(errno));
 }
 
 // In the child: async-signal-safe calls only.
-[[noreturn]] void become_reader(int answer, pid_t parent, char* const* words) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
+void prepare_reader(const Descriptor& answer) {
   ignore_interruptions();
-  if (getppid() != parent) _exit(1);  // it died before this could notice
   constexpr rlimit kNone{0, 0};
   setrlimit(RLIMIT_CORE, &kNone);
   const int nowhere = open("/dev/null", O_WRONLY);
   dup2(nowhere, STDOUT_FILENO);
   dup2(nowhere, STDERR_FILENO);
-  fcntl(answer, F_SETFD, 0);  // stays open
-  execv("/proc/self/exe", words);
-  _exit(errno == ENOMEM || errno == EAGAIN ? kNotStarted : kNotExecuted);
+  fcntl(answer.number(), F_SETFD, 0);  // stays open
 }
 
-std::string read_to_end(int descriptor) {
+pid_t start_reader(const Descriptor& answer, const std::string& what, const std::string& path,
+                   const std::string& name) {
+  const HeldSignals until_child_ignores_them;
+  try {
+    return start_anew({kGridReaderCommand, std::to_string(answer.number()), what, path, name},
+                      [&answer] { prepare_reader(answer); });
+  } catch (const std::system_error& error) {
+    throw UnavailableError(path + ": cannot start another process: " + error.code().message());
+  }
+}
+
+std::string read_to_end(const Descriptor& file) {
   std::string bytes;
   char buffer[4096];
   for (;;) {
-    const ssize_t count = read(descriptor, buffer, sizeof buffer);
+    const ssize_t count = read(file.number(), buffer, sizeof buffer);
     if (count == 0 || (count < 0 && errno != EINTR)) return bytes;
     if (count > 0) bytes.append(buffer, static_cast<std::size_t>(count));
   }
@@ -194,25 +207,10 @@ std::string end_of(pid_t process, const std::string& path) {
 
 // What another process has read.
 std::string read_elsewhere(const std::string& what, const std::string& path, const std::string& name) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) fail(path, "open a pipe");
-  std::vector<std::string> words{"raycone", kGridReaderCommand, std::to_string(ends[1]), what, path, name};
-  std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-  const pid_t parent = getpid();
-  std::optional<HeldSignals> until_child_ignores_them(std::in_place);
-  const pid_t process = fork();
-  if (process == 0) become_reader(ends[1], parent, arguments.data());
-  const int error = errno;
-  until_child_ignores_them.reset();
-  close(ends[1]);
-  const std::string outcome = process > 0 ? read_to_end(ends[0]) : "";
-  close(ends[0]);
-  if (process < 0) {
-    errno = error;
-    fail(path, "start another process");
-  }
+  Pipe pipe = open_pipe(path);
+  const pid_t process = start_reader(pipe.writing, what, path, name);
+  pipe.writing = Descriptor();  // else there would be no end to what is read
+  const std::string outcome = read_to_end(pipe.reading);
   const std::string end = end_of(process, path);
   if (!end.empty()) throw InputError(path + ": not a readable OpenVDB file: it crashed OpenVDB (" + end + ")");
   return content_of(path, outcome);

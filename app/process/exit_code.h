@@ -13,9 +13,4 @@ enum class ExitCode : int {
   kInternal = 6,
 };
 
-// Of another process of our own: it lacked memory to start. Also the dynamic linker's, which lacks a library, too.
-inline constexpr int kNotStarted = 127;
-// Likewise, for another reason: its file may not be executed, as in shells.
-inline constexpr int kNotExecuted = 126;
-
 }  // namespace raycone

@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "app/batch/file_stamp.h"
-#include "app/batch/message.h"
 #include "app/options/batch_command.h"
+#include "app/process/message.h"
 
 namespace raycone {
 

@@ -4,40 +4,10 @@
 #include <cstdint>
 #include <iterator>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <utility>
 
-#include "app/text/parse_value.h"
-
 namespace raycone {
-namespace {
-
-// The strings of a message, one after the other.
-class Strings {
- public:
-  explicit Strings(std::span<const std::string> strings) : rest_(strings) {}
-
-  std::span<const std::string> take(std::size_t count) {
-    if (count > rest_.size()) throw std::runtime_error("a result ends within a value");
-    const auto taken = rest_.first(count);
-    rest_ = rest_.subspan(count);
-    return taken;
-  }
-  std::string text() { return take(1).front(); }
-  std::int64_t number() {
-    if (const std::optional<std::int64_t> number = integer_from(text())) return *number;
-    throw std::runtime_error("a message has no number where one is expected");
-  }
-  std::size_t count() { return static_cast<std::size_t>(number()); }
-  [[nodiscard]] std::span<const std::string> rest() const { return rest_; }
-
- private:
-  std::span<const std::string> rest_;
-};
-
-}  // namespace
-
 // Row and stamp, texts, then lists behind their lengths; warnings are what is left.
 Message to_message(const JobResult& result) {
   Message message = to_record(result.row);
@@ -54,7 +24,7 @@ Message to_message(const JobResult& result) {
 }
 
 JobResult result_from(const Message& message) {
-  Strings strings(message);
+  MessageStrings strings(message);
   const auto record = strings.take(result_columns().size());
   std::optional<ResultRow> row = row_from({record.begin(), record.end()});
   const std::optional<FileStamp> stamp = stamp_from(strings.take(kStampFields).first<kStampFields>());

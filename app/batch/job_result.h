@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "app/batch/file_stamp.h"
-#include "app/batch/message.h"
 #include "app/batch/result_row.h"
+#include "app/process/message.h"
 
 namespace raycone {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "app/batch/job_result.h"
-#include "app/batch/message.h"
+#include "app/process/message.h"
 #include "io/files/descriptor.h"
 
 namespace raycone {

@@ -6,14 +6,14 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdint>
+#include <cstddef>
 #include <cstring>
 #include <new>
-#include <optional>
+#include <stdexcept>
 #include <system_error>
 #include <type_traits>
-#include <utility>
 
+#include "app/process/message.h"
 #include "app/process/own_process.h"
 #include "app/process/signals.h"
 #include "io/files/descriptor.h"
@@ -23,15 +23,13 @@
 namespace raycone {
 namespace {
 
-// What the reader writes: one of these letters, and behind it what was read or the message.
-enum Outcome : char {
-  kRead = 'r',
-  kInvalid = 'i',
-  kUnreadable = 'u',
-  kLimited = 'l',
-  kUnavailable = 'a',
-  kOutOfMemory = 'm'
-};
+// What the reader writes is a message that begins with one of these words. Behind it is what was read, or why not.
+constexpr const char* kRead = "read";
+constexpr const char* kInvalid = "invalid";
+constexpr const char* kUnreadable = "unreadable";
+constexpr const char* kLimited = "limited";
+constexpr const char* kUnavailable = "unavailable";
+constexpr const char* kOutOfMemory = "out of memory";
 
 constexpr const char* kLatticeWord = "lattice";
 constexpr const char* kFactsWord = "facts";
@@ -41,67 +39,35 @@ std::string bytes_of(const PlacedLattice& lattice) {
   return {reinterpret_cast<const char*>(&lattice), sizeof lattice};
 }
 
-// Texts one after the other, each behind its size.
-class Texts {
- public:
-  explicit Texts(std::string bytes = "") : bytes_(std::move(bytes)) {}
-
-  void put(const std::string& text) {
-    const std::uint64_t size = text.size();
-    bytes_.append(reinterpret_cast<const char*>(&size), sizeof size).append(text);
-  }
-  // Nothing where there is no other.
-  [[nodiscard]] std::optional<std::string> take() {
-    std::uint64_t size = 0;
-    if (bytes_.size() - at_ < sizeof size) return std::nullopt;
-    std::memcpy(&size, &bytes_[at_], sizeof size);
-    if (bytes_.size() - at_ - sizeof size < size) return std::nullopt;
-    at_ += sizeof size + size;
-    return bytes_.substr(at_ - size, size);
-  }
-  [[nodiscard]] const std::string& bytes() const { return bytes_; }
-
- private:
-  std::string bytes_;
-  std::size_t at_ = 0;
-};
-
 // Grids and facts come behind the rest, in groups of two and three.
-std::string bytes_of(const VolumeFacts& facts) {
-  Texts texts;
-  texts.put(facts.format);
-  texts.put(facts.lattice ? bytes_of(*facts.lattice) : "");
-  texts.put(facts.no_lattice);
-  texts.put(std::to_string(facts.arrays.size()));
-  for (const ArrayFacts& grid : facts.arrays) {
-    texts.put(grid.name);
-    texts.put(grid.type);
-  }
-  for (const MadeFact& fact : facts.made) {
-    texts.put(fact.key);
-    texts.put(fact.value);
-    texts.put(fact.is_json ? "1" : "");
-  }
-  return texts.bytes();
+Message message_of(const VolumeFacts& facts) {
+  Message message{facts.format, facts.lattice ? bytes_of(*facts.lattice) : "", facts.no_lattice,
+                  std::to_string(facts.arrays.size())};
+  for (const ArrayFacts& grid : facts.arrays) message.insert(message.end(), {grid.name, grid.type});
+  for (const MadeFact& fact : facts.made)
+    message.insert(message.end(), {fact.key, fact.value, fact.is_json ? "1" : ""});
+  return message;
 }
 
-std::string read_as(const std::string& what, const std::string& path, const std::string& name) {
-  return what == kFactsWord ? bytes_of(read_vdb_facts(path)) : bytes_of(read_vdb_lattice(path, name));
+Message what_was_read(const std::string& what, const std::string& path, const std::string& name) {
+  return what == kFactsWord ? message_of(read_vdb_facts(path)) : Message{bytes_of(read_vdb_lattice(path, name))};
 }
 
-std::string outcome_of_reading(const std::string& what, const std::string& path, const std::string& name) {
+Message outcome_of_reading(const std::string& what, const std::string& path, const std::string& name) {
   try {
-    return std::string(1, kRead) + read_as(what, path, name);
+    Message message = what_was_read(what, path, name);
+    message.insert(message.begin(), kRead);
+    return message;
   } catch (const UnreadableError& error) {
-    return std::string(1, kUnreadable) + error.what();
+    return {kUnreadable, error.what()};
   } catch (const InputError& error) {
-    return std::string(1, kInvalid) + error.what();
+    return {kInvalid, error.what()};
   } catch (const UnavailableError& error) {
-    return std::string(1, kUnavailable) + error.what();
+    return {kUnavailable, error.what()};
   } catch (const LimitError& error) {
-    return std::string(1, kLimited) + error.what();
+    return {kLimited, error.what()};
   } catch (const std::bad_alloc&) {
-    return std::string(1, kOutOfMemory);
+    return {kOutOfMemory, ""};
   }
 }
 
@@ -109,43 +75,37 @@ std::string outcome_of_reading(const std::string& what, const std::string& path,
   throw UnreadableError(path + ": cannot read: the process that does it was disturbed");
 }
 
-// What was read.
-std::string content_of(const std::string& path, const std::string& outcome) {
-  if (outcome[0] == kInvalid) throw InputError(outcome.substr(1));
-  if (outcome[0] == kUnreadable) throw UnreadableError(outcome.substr(1));
-  if (outcome[0] == kUnavailable) throw UnavailableError(outcome.substr(1));
-  if (outcome[0] == kLimited) throw LimitError(outcome.substr(1));
+// Throws what the reader did, where it read nothing.
+[[noreturn]] void fail_as_reader(const std::string& path, const Message& outcome) {
+  if (outcome.size() != 2) fail_disturbed(path);
+  if (outcome[0] == kInvalid) throw InputError(outcome[1]);
+  if (outcome[0] == kUnreadable) throw UnreadableError(outcome[1]);
+  if (outcome[0] == kUnavailable) throw UnavailableError(outcome[1]);
+  if (outcome[0] == kLimited) throw LimitError(outcome[1]);
   if (outcome[0] == kOutOfMemory) throw std::bad_alloc();
-  if (outcome[0] != kRead) fail_disturbed(path);
-  return outcome.substr(1);
+  fail_disturbed(path);
 }
 
-PlacedLattice lattice_from(const std::string& path, const std::string& bytes) {
+// Both throw std::runtime_error for what no reader writes.
+PlacedLattice lattice_from(const std::string& bytes) {
   PlacedLattice lattice;
-  if (bytes.size() != sizeof lattice) fail_disturbed(path);
+  if (bytes.size() != sizeof lattice) throw std::runtime_error("a lattice of another size");
   std::memcpy(&lattice, bytes.data(), sizeof lattice);
   return lattice;
 }
 
-VolumeFacts facts_from(const std::string& path, const std::string& bytes) {
-  Texts texts(bytes);
-  const auto next = [&] {
-    std::optional<std::string> text = texts.take();
-    if (!text) fail_disturbed(path);
-    return *text;
-  };
+VolumeFacts facts_from(MessageStrings& strings) {
   VolumeFacts facts;
-  facts.format = next();
-  if (const std::string lattice = next(); !lattice.empty()) facts.lattice = lattice_from(path, lattice);
-  facts.no_lattice = next();
-  const std::string grids = next();
-  while (std::to_string(facts.arrays.size()) != grids) {
-    const std::string name = next();
-    facts.arrays.push_back({name, next()});
+  facts.format = strings.text();
+  if (const std::string lattice = strings.text(); !lattice.empty()) facts.lattice = lattice_from(lattice);
+  facts.no_lattice = strings.text();
+  for (std::size_t left = strings.count(); left > 0; --left) {
+    const auto grid = strings.take(2);
+    facts.arrays.push_back({grid[0], grid[1]});
   }
-  while (std::optional<std::string> key = texts.take()) {
-    const std::string value = next();
-    facts.made.push_back({*key, value, !next().empty()});
+  while (!strings.rest().empty()) {
+    const auto fact = strings.take(3);
+    facts.made.push_back({fact[0], fact[1], !fact[2].empty()});
   }
   return facts;
 }
@@ -205,29 +165,44 @@ std::string end_of(pid_t process, const std::string& path) {
   return status == 0 ? "" : "exit status " + std::to_string(status);
 }
 
-// What another process has read.
-std::string read_elsewhere(const std::string& what, const std::string& path, const std::string& name) {
+// What another process wrote.
+std::string answer_of_reader(const std::string& what, const std::string& path, const std::string& name) {
   Pipe pipe = open_pipe(path);
   const pid_t process = start_reader(pipe.writing, what, path, name);
   pipe.writing = Descriptor();  // else there would be no end to what is read
-  const std::string outcome = read_to_end(pipe.reading);
+  std::string answer = read_to_end(pipe.reading);
   const std::string end = end_of(process, path);
   if (!end.empty()) throw InputError(path + ": not a readable OpenVDB file: it crashed OpenVDB (" + end + ")");
-  return content_of(path, outcome);
+  return answer;
+}
+
+// What `take` makes of what another process has read.
+template <typename Take>
+auto read_elsewhere(const std::string& what, const std::string& path, const std::string& name, const Take& take) {
+  const std::string answer = answer_of_reader(what, path, name);
+  Message outcome;
+  try {
+    outcome = message_from(answer);
+    MessageStrings strings(outcome);
+    if (strings.text() == kRead) return take(strings);
+  } catch (const std::runtime_error&) {
+    fail_disturbed(path);
+  }
+  fail_as_reader(path, outcome);
 }
 
 }  // namespace
 
 ExitCode run_grid_reader(const std::vector<std::string>& words) {
-  const std::string outcome = outcome_of_reading(words.at(1), words.at(2), words.at(3));
-  const ssize_t written = write(std::stoi(words.at(0)), outcome.data(), outcome.size());
-  return written == static_cast<ssize_t>(outcome.size()) ? ExitCode::kDone : ExitCode::kOutput;
+  const std::string answer = to_bytes(outcome_of_reading(words.at(1), words.at(2), words.at(3)));
+  const ssize_t written = write(std::stoi(words.at(0)), answer.data(), answer.size());
+  return written == static_cast<ssize_t>(answer.size()) ? ExitCode::kDone : ExitCode::kOutput;
 }
 
 PlacedLattice read_grid_lattice(const std::string& path, const std::string& name) {
-  return lattice_from(path, read_elsewhere(kLatticeWord, path, name));
+  return read_elsewhere(kLatticeWord, path, name, [](MessageStrings& strings) { return lattice_from(strings.text()); });
 }
 
-VolumeFacts read_grid_facts(const std::string& path) { return facts_from(path, read_elsewhere(kFactsWord, path, "")); }
+VolumeFacts read_grid_facts(const std::string& path) { return read_elsewhere(kFactsWord, path, "", facts_from); }
 
 }  // namespace raycone

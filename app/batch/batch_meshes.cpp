@@ -15,6 +15,7 @@
 #include "app/input/mesh_list.h"
 #include "app/process/limits.h"
 #include "app/process/usage_error.h"
+#include "io/files/enumerated.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
 #include "io/files/unpack.h"
@@ -155,13 +156,11 @@ std::string output_name(const std::string& name, const MeshSearch& search) {
   return fs::path(without_packing_extension(name)).replace_extension(search.extension).string();
 }
 
-// "a, b and c", or "a, b, c and 7 more".
-std::string enumerated(const std::vector<const BatchMesh*>& meshes) {
+std::string paths_of(const std::vector<const BatchMesh*>& meshes) {
   constexpr std::size_t kMostNamed = 3;
-  const std::size_t named = std::min(meshes.size(), kMostNamed);
-  std::string text = meshes.front()->path;
-  for (std::size_t i = 1; i < named; ++i) text += (i + 1 < meshes.size() ? ", " : " and ") + meshes[i]->path;
-  return named < meshes.size() ? text + " and " + std::to_string(meshes.size() - named) + " more" : text;
+  std::vector<std::string> paths;
+  for (const BatchMesh* const mesh : meshes) paths.push_back(mesh->path);
+  return enumerated(first_words(std::move(paths), kMostNamed), " and ");
 }
 
 bool have_one_name(const std::vector<const BatchMesh*>& meshes) {
@@ -171,7 +170,7 @@ bool have_one_name(const std::vector<const BatchMesh*>& meshes) {
 std::string collision_text(const std::vector<const BatchMesh*>& meshes) {
   const std::string all = meshes.size() == 2 ? ": would both be " : ": would all be ";
   const BatchMesh& first = *meshes.front();
-  return enumerated(meshes) + all +
+  return paths_of(meshes) + all +
          (have_one_name(meshes) ? first.name + " in the results" : "written to " + first.output);
 }
 

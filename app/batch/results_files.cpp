@@ -18,6 +18,7 @@
 #include "app/process/signals.h"
 #include "io/files/counted.h"
 #include "io/files/descriptor.h"
+#include "io/files/enumerated.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
 
@@ -122,12 +123,8 @@ std::string missing_line(const std::set<std::uint64_t>& present, std::uint64_t c
     if (!present.contains(index)) names.push_back(std::to_string(index));
   }
   if (missing > kMostNamed) names.push_back(std::to_string(missing - kMostNamed) + " more");
-  std::string line = missing == 1 ? "no results of shard " : "no results of shards ";
-  for (std::size_t n = 0; n < names.size(); ++n) {
-    if (n > 0) line += n + 1 == names.size() ? " and " : ", ";
-    line += names[n];
-  }
-  return line + " of " + std::to_string(count);
+  return (missing == 1 ? "no results of shard " : "no results of shards ") + enumerated(names, " and ") + " of " +
+         std::to_string(count);
 }
 
 }  // namespace

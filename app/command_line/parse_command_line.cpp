@@ -22,6 +22,7 @@
 #include "app/process/usage_error.h"
 #include "app/process/version.h"
 #include "app/text/wrapped_help.h"
+#include "io/files/enumerated.h"
 
 namespace raycone {
 namespace {
@@ -151,21 +152,10 @@ std::vector<std::string> command_names() {
   return names;
 }
 
-// "lattice, points or info"
-std::string listed_commands() {
-  const std::vector<std::string> names = command_names();
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 < names.size() ? ", " : " or ";
-    text += names[i];
-  }
-  return text;
-}
-
 const CommandEntry& command_named(const std::string& name) {
   const auto found = std::ranges::find(commands(), name, [](const CommandEntry& entry) { return entry.spec.name; });
   if (found != commands().end()) return *found;
-  const std::string expected = ", expected " + listed_commands() + help_hint("");
+  const std::string expected = ", expected " + enumerated(command_names(), " or ") + help_hint("");
   if (name.empty()) throw UsageError("no command given" + expected);
   const std::string meant = suggestion(name, command_names());
   throw UsageError("unknown command " + name + (meant.empty() ? expected : meant));

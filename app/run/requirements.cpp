@@ -2,21 +2,26 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "app/report/info.h"
 #include "core/mesh/mesh_flaws.h"
 #include "io/files/counted.h"
+#include "io/files/enumerated.h"
 
 namespace raycone {
 namespace {
 
 // "face 3", "faces 3 and 17", "faces 3, 17 and 5 more"
 std::string named_faces(const std::vector<std::uint32_t>& faces) {
-  if (faces.size() == 1) return "face " + std::to_string(faces[0]);
-  const std::string two = "faces " + std::to_string(faces[0]);
-  if (faces.size() == 2) return two + " and " + std::to_string(faces[1]);
-  return two + ", " + std::to_string(faces[1]) + " and " + std::to_string(faces.size() - 2) + " more";
+  constexpr std::size_t kMostNamed = 2;
+  std::vector<std::string> numbers;
+  for (const std::uint32_t face : faces) numbers.push_back(std::to_string(face));
+  return (faces.size() == 1 ? "face " : "faces ") + enumerated(first_words(std::move(numbers), kMostNamed), " and ");
 }
 
 class Judgement {

@@ -9,10 +9,13 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "io/files/ascii.h"
+#include "io/files/enumerated.h"
 #include "io/files/file_error.h"
 #include "io/files/percent_encoding.h"
 #include "io/files/text_scanner.h"
@@ -55,11 +58,9 @@ constexpr std::array<Unit, 6> kUnits{
 std::string unit_of(const XmlAttributes& attributes) {
   const std::string_view unit = attributes.find("unit").value_or("millimeter");
   if (micrometres_of(unit)) return std::string(unit);
-  std::string names;
-  for (const Unit& known : kUnits) {
-    names += (names.empty() ? "" : &known == &kUnits.back() ? " or " : ", ") + std::string(known.name);
-  }
-  attributes.fail("unit is '" + excerpt(unit) + "', expected " + names);
+  std::vector<std::string> names;
+  for (const Unit& known : kUnits) names.emplace_back(known.name);
+  attributes.fail("unit is '" + excerpt(unit) + "', expected " + enumerated(names, " or "));
 }
 
 // "m00 m01 ... m32": the rows of a matrix that row vectors are multiplied by, so that each is where an axis goes.

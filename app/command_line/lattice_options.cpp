@@ -1,10 +1,11 @@
 #include "app/command_line/lattice_options.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "app/command_line/common_options.h"
@@ -44,18 +45,15 @@ GridReference parse_like(const std::string& text) {
 
 // An array or image of a lattice has one axis per axis of the lattice.
 void check_one_field(const LatticeCommand& command) {
-  const std::map<FieldFormat, std::string> names{{FieldFormat::kNpy, "npy"},
-                                                 {FieldFormat::kNrrd, "nrrd"},
-                                                 {FieldFormat::kNifti, "nii"},
-                                                 {FieldFormat::kNiftiGz, "nii.gz"}};
-  const auto name = names.find(command.encoding.format);
-  if (name == names.end()) return;
-  const std::string reason = name->second + " holds one number per sample, expected vdb, csv, npz or vti";
+  constexpr std::array kOfOneField{FieldFormat::kNpy, FieldFormat::kNrrd, FieldFormat::kNifti, FieldFormat::kNiftiGz};
+  const FieldFormat format = command.encoding.format;
+  if (std::ranges::count(kOfOneField, format) == 0) return;
+  const std::string name(name_of(format));
+  const std::string reason = name + " holds one number per sample, expected vdb, csv, npz or vti";
   if (command.field.diagnostics) throw UsageError("--diagnostics: " + reason);
   if (command.field.fields.size() > 1) throw UsageError("several fields: " + reason);
-  if (command.field.has(Field::kGradient) && command.encoding.format != FieldFormat::kNpy) {
-    throw UsageError("--field gradient: " + name->second +
-                     " holds one number per sample, expected vdb, csv, npy, npz or vti");
+  if (command.field.has(Field::kGradient) && format != FieldFormat::kNpy) {
+    throw UsageError("--field gradient: " + name + " holds one number per sample, expected vdb, csv, npy, npz or vti");
   }
 }
 

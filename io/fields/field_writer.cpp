@@ -1,14 +1,25 @@
 #include "io/fields/field_writer.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 #include "io/fields/format_writers.h"
 #include "io/files/ascii.h"
 
 namespace raycone {
-
 namespace {
+
+struct NamedFormat {
+  std::string_view name;
+  FieldFormat format;
+};
+
+constexpr std::array kFormatNames{NamedFormat{"vdb", FieldFormat::kVdb},   NamedFormat{"csv", FieldFormat::kCsv},
+                                  NamedFormat{"npy", FieldFormat::kNpy},   NamedFormat{"npz", FieldFormat::kNpz},
+                                  NamedFormat{"vti", FieldFormat::kVti},   NamedFormat{"nrrd", FieldFormat::kNrrd},
+                                  NamedFormat{"nii", FieldFormat::kNifti}, NamedFormat{"nii.gz", FieldFormat::kNiftiGz},
+                                  NamedFormat{"none", FieldFormat::kNone}};
 
 class NoLatticeWriter : public LatticeWriter {
  public:
@@ -32,17 +43,14 @@ void LatticeWriter::write_blocks(const SignedBlocks& /*blocks*/) {
 }
 
 std::optional<FieldFormat> field_format_from_name(std::string_view name) {
-  const std::string lower = lower_case(name);
-  if (lower == "vdb") return FieldFormat::kVdb;
-  if (lower == "csv") return FieldFormat::kCsv;
-  if (lower == "npy") return FieldFormat::kNpy;
-  if (lower == "none") return FieldFormat::kNone;
-  if (lower == "vti") return FieldFormat::kVti;
-  if (lower == "npz") return FieldFormat::kNpz;
-  if (lower == "nrrd") return FieldFormat::kNrrd;
-  if (lower == "nii") return FieldFormat::kNifti;
-  if (lower == "nii.gz") return FieldFormat::kNiftiGz;
-  return std::nullopt;
+  const auto* const found =
+      std::ranges::find_if(kFormatNames, [&](const NamedFormat& known) { return is_word(name, known.name); });
+  return found == kFormatNames.end() ? std::nullopt : std::optional(found->format);
+}
+
+std::string_view name_of(FieldFormat format) {
+  const auto* const found = std::ranges::find(kFormatNames, format, &NamedFormat::format);
+  return found == kFormatNames.end() ? std::string_view() : found->name;
 }
 
 std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output, const PlacedLattice& lattice,

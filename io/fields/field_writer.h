@@ -36,6 +36,8 @@ enum class FieldFormat {
 
 // "vdb", "csv", "npy", "vti", "npz", "nrrd", "nii", "nii.gz" or "none", in any case.
 [[nodiscard]] std::optional<FieldFormat> field_format_from_name(std::string_view name);
+// In small letters; empty for what has none.
+[[nodiscard]] std::string_view name_of(FieldFormat format);
 
 // What the numbers of a field are; formats choose how they store them.
 enum class FieldKind {

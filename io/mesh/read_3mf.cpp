@@ -31,6 +31,26 @@ struct Instance {
   AffineMap placement;
 };
 
+// What is left out of the result or taken for something else, for warnings.
+struct ThreeMfOmissions {
+  std::uint64_t lattices = 0;
+  std::uint64_t sliced = 0;
+  std::uint64_t others = 0;
+  std::uint64_t empty = 0;
+};
+
+std::vector<Warning> warnings_of(const ThreeMfOmissions& omissions) {
+  std::vector<Warning> warnings;
+  const auto warn = [&](const char* name, std::uint64_t count, const char* noun, const char* what) {
+    if (count > 0) warnings.push_back({name, counted(count, noun) + " " + what});
+  };
+  warn("beam-lattices", omissions.lattices, "beam lattice", "without triangles ignored");
+  warn("slices", omissions.sliced, "object", "with slices, which are ignored: triangles count");
+  warn("other-objects", omissions.others, "object", "of the type 'other', as modifiers and holes are, count as solid");
+  warn("empty-objects", omissions.empty, "object", "without triangles ignored");
+  return warnings;
+}
+
 class ThreeMfPackage {
  public:
   explicit ThreeMfPackage(const NamedBytes& source) : file_(source.name), parts_(source.bytes, source.name) {}
@@ -49,21 +69,7 @@ class ThreeMfPackage {
     }
     parsed_.groups = groups_.finish(parsed_.mesh.triangles.size());
     parsed_.unit = root.unit;
-    if (lattices_ > 0) {
-      parsed_.warnings.push_back({"beam-lattices", counted(lattices_, "beam lattice") + " without triangles ignored"});
-    }
-    if (sliced_ > 0) {
-      parsed_.warnings.push_back(
-          {"slices", counted(sliced_, "object") + " with slices, which are ignored: triangles count"});
-    }
-    if (others_ > 0) {
-      parsed_.warnings.push_back(
-          {"other-objects",
-           counted(others_, "object") + " of the type 'other', as modifiers and holes are, count as solid"});
-    }
-    if (empty_ > 0) {
-      parsed_.warnings.push_back({"empty-objects", counted(empty_, "object") + " without triangles ignored"});
-    }
+    parsed_.warnings = warnings_of(omissions_);
     return std::move(parsed_);
   }
 
@@ -125,10 +131,10 @@ class ThreeMfPackage {
   }
 
   void note_omissions(const ThreeMfObject& placed) {
-    lattices_ += placed.lattices;
-    sliced_ += placed.is_sliced;
-    others_ += placed.is_other && !placed.mesh.triangles.empty();
-    empty_ += placed.mesh.triangles.empty() && placed.components.empty() && placed.lattices == 0;
+    omissions_.lattices += placed.lattices;
+    omissions_.sliced += placed.is_sliced;
+    omissions_.others += placed.is_other && !placed.mesh.triangles.empty();
+    omissions_.empty += placed.mesh.triangles.empty() && placed.components.empty() && placed.lattices == 0;
   }
 
   // Bounds what a small file may ask for by naming an object many times.
@@ -149,7 +155,7 @@ class ThreeMfPackage {
   std::map<const ThreeMfObject*, std::size_t> first_use_;  // the order of objects with triangles
   std::size_t uses_ = 0, depth_ = 0;
   std::set<const ThreeMfObject*> seen_;
-  std::uint64_t lattices_ = 0, sliced_ = 0, others_ = 0, empty_ = 0;  // of objects that were seen
+  ThreeMfOmissions omissions_;            // of objects that were seen
   std::uint64_t stored_ = 0, spent_ = 0;  // vertices and triangles: of models_, and of copies
   GroupCollector groups_;
   ParsedMesh parsed_;

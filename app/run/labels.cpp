@@ -33,33 +33,59 @@ bool any_inside(std::span<const std::uint8_t> inside) {
 
 std::span<const std::uint8_t> flags_of(const FieldSamples& samples) { return samples.numbers().inside; }
 
-// Gives the samples inside of `part` their label. Returns whether there are any.
-bool add_part(MeshToEvaluate part, std::int32_t label, LabelledParts& parts, LabelVolume& volume,
-              const PlacedLattice& lattice, const FieldOptions& field, MeshRun& run, std::atomic<std::uint64_t>* done) {
-  const LatticeBlock reach = PartEvaluator::reach(lattice, part, field.rule);
-  if (done) *done += static_cast<std::uint64_t>(whole(lattice.grid).size() - reach.size());
-  if (reach.size() == 0) return false;
-  const FieldOptions options = PartEvaluator::options_of(field);
-  const bool open = !part.edges.empty();
-  const bool as_points = !world_order(lattice).has_value();
-  PartEvaluator evaluator = timed(run.report.seconds.prepare, [&] {
-    return PartEvaluator(std::move(part), field, static_cast<double>(reach.size()));
-  });
-  if (as_points) timed(run.report.seconds.prepare, [&] { evaluator.evaluator().prepare_points(); });
-  const double left = static_cast<double>(run.limits().memory()) - memory_in_use();
-  FieldSamples samples(options);
-  bool found = false;
-  timed(run.report.seconds.evaluate, [&] {
-    for_slabs(reach, slab_samples(options, {open, !lattice.along_axes()}, left), [&](const LatticeBlock& slab) {
-      parts.count(evaluator.evaluator().evaluate(lattice, slab, samples, done));
+// The labels of a lattice in the making.
+class LatticeLabels {
+ public:
+  LatticeLabels(LabelledParts& parts, const PlacedLattice& lattice, const FieldOptions& field, MeshRun& run)
+      : parts_(parts),
+        lattice_(lattice),
+        field_(field),
+        run_(run),
+        volume_(lattice.grid, parts.size()),
+        done_(run.start_progress(run.report.samples * parts.size())) {}
+
+  // Gives the samples inside of `part` their label. Returns whether there are any.
+  bool add(MeshToEvaluate part, std::int32_t label) {
+    const LatticeBlock reach = PartEvaluator::reach(lattice_, part, field_.rule);
+    *done_ += static_cast<std::uint64_t>(whole(lattice_.grid).size() - reach.size());
+    if (reach.size() == 0) return false;
+    const SlabKind kind{.open = !part.edges.empty(), .turned = !lattice_.along_axes()};
+    const PartEvaluator evaluator = timed(run_.report.seconds.prepare, [&] {
+      return PartEvaluator(std::move(part), field_, static_cast<double>(reach.size()));
+    });
+    const bool as_points = !world_order(lattice_).has_value();
+    if (as_points) timed(run_.report.seconds.prepare, [&] { evaluator.evaluator().prepare_points(); });
+    const bool found =
+        timed(run_.report.seconds.evaluate, [&] { return label_inside(evaluator.evaluator(), reach, kind, label); });
+    parts_.spent(evaluator.evaluator());
+    return found;
+  }
+
+  // When all parts have been added.
+  [[nodiscard]] LabelVolume take() { return std::move(volume_); }
+
+ private:
+  bool label_inside(const FieldEvaluator& evaluator, const LatticeBlock& reach, SlabKind kind, std::int32_t label) {
+    const FieldOptions options = PartEvaluator::options_of(field_);
+    const double left = static_cast<double>(run_.limits().memory()) - memory_in_use();
+    FieldSamples samples(options);
+    bool found = false;
+    for_slabs(reach, slab_samples(options, kind, left), [&](const LatticeBlock& slab) {
+      parts_.count(evaluator.evaluate(lattice_, slab, samples, done_));
       if (!any_inside(flags_of(samples))) return;
       found = true;
-      volume.add(slab, flags_of(samples), label, parts.first_wins());
+      volume_.add(slab, flags_of(samples), label, parts_.first_wins());
     });
-  });
-  parts.spent(evaluator.evaluator());
-  return found;
-}
+    return found;
+  }
+
+  LabelledParts& parts_;
+  const PlacedLattice& lattice_;
+  const FieldOptions& field_;
+  MeshRun& run_;
+  LabelVolume volume_;
+  std::atomic<std::uint64_t>* done_;  // samples of parts
+};
 
 // Of many small parts, each reaches few of the points.
 class PointsByX {
@@ -90,23 +116,22 @@ class PointsByX {
 
 LabelVolume label_lattice(LabelledParts& parts, const PlacedLattice& lattice, const FieldOptions& field, MeshRun& run) {
   RunReport& report = run.report;
-  LabelVolume volume(lattice.grid, parts.size());
+  LatticeLabels labels(parts, lattice, field, run);
   SampleDraw draw(field.verify);
   draw.offer(lattice, whole(lattice.grid), {});
   LabelCheck check(draw.samples(), field.rule, parts.first_wins());
-  std::atomic<std::uint64_t>* const done = run.start_progress(report.samples * parts.size());
   for (std::size_t n = 0; n < parts.size(); ++n) {
     MeshToEvaluate part = parts.next();
     if (field.verify > 0) timed(report.seconds.verify, [&] { check.add(part.mesh); });
     const bool expected = should_have_inside(bounding_box(part.mesh), lattice);
-    parts.found(add_part(std::move(part), static_cast<std::int32_t>(n + 1), parts, volume, lattice, field, run, done),
-                expected);
+    parts.found(labels.add(std::move(part), static_cast<std::int32_t>(n + 1)), expected);
   }
+  LabelVolume volume = labels.take();
   parts.finish(volume.counts());
   if (field.verify == 0) return volume;
-  std::vector<std::int32_t> labels;
-  for (const DrawnSample& sample : check.samples()) labels.push_back(volume.at(sample.number));
-  report.add_verification(check.compare(report.mesh, labels));
+  std::vector<std::int32_t> drawn;
+  for (const DrawnSample& sample : check.samples()) drawn.push_back(volume.at(sample.number));
+  report.add_verification(check.compare(report.mesh, drawn));
   return volume;
 }
 

@@ -232,11 +232,15 @@ Json to_object(const VolumeFacts& facts) {
 }
 
 // File names may hold any bytes; JSON is UTF-8.
-std::string to_text(const Json& document) {
-  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+std::string printed(const Json& document, int indentation) {
+  return document.dump(indentation, ' ', false, Json::error_handler_t::replace);
 }
 
-std::string to_line(const Json& document) { return document.dump(-1, ' ', false, Json::error_handler_t::replace); }
+constexpr int kIndentation = 2, kInOneLine = -1;
+
+std::string to_text(const Json& document) { return printed(document, kIndentation) + "\n"; }
+
+std::string to_line(const Json& document) { return printed(document, kInOneLine); }
 
 }  // namespace
 
@@ -310,15 +314,13 @@ std::string to_json(const VolumeInfo& info) { return to_text(to_object(info.fact
 std::string to_json_item(const VolumeInfo& info) {
   Json document{{"file", info.file}};
   document.update(to_object(info.facts));
-  return document.dump(2, ' ', false, Json::error_handler_t::replace);
+  return printed(document, kIndentation);
 }
 
 std::vector<std::pair<std::string, std::string>> made_lines(const VolumeFacts& facts) {
   std::vector<std::pair<std::string, std::string>> lines;
   const Json made = made_object(facts);
-  const auto text = [](const Json& value) {
-    return value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Json::error_handler_t::replace);
-  };
+  const auto text = [](const Json& value) { return value.is_string() ? value.get<std::string>() : to_line(value); };
   const auto is_text = [](const Json& value) { return value.is_string(); };
   for (const auto& [key, value] : made.items()) {
     if (!value.is_array() || !std::ranges::all_of(value, is_text)) {
@@ -337,7 +339,7 @@ std::string to_json(const MeshInfo& info) { return to_text(to_object(info)); }
 std::string to_json_item(const MeshInfo& info) {
   Json document{{"mesh", info.mesh}};
   document.update(to_object(info));
-  return document.dump(2, ' ', false, Json::error_handler_t::replace);
+  return printed(document, kIndentation);
 }
 
 CsvRecord csv_names(const MeshInfo& info) {

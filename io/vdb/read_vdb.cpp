@@ -43,15 +43,15 @@ std::uint64_t status_bytes(const std::string& key) {
 }
 
 // OpenVDB allocates whatever lengths a file announces. While this lives, this process cannot allocate more than what a
-// true announcement of the file at `path` may lead to.
+// true announcement of a file of `size` bytes may lead to.
 class MemoryForFile {
  public:
-  explicit MemoryForFile(const std::string& path) {
+  explicit MemoryForFile(std::uint64_t size) {
     constexpr std::uint64_t kLibraries = std::uint64_t{64} << 20;  // their own needs, an arena of the allocator
     // The largest node: 32^3 tiles of 24 bytes, a vector of doubles, of which two masks of a bit each and little else
     // need be in the file.
     constexpr std::uint64_t kMostPerByte = 128;
-    const std::uint64_t more = kLibraries + kMostPerByte * std::filesystem::file_size(path);
+    const std::uint64_t more = kLibraries + kMostPerByte * size;
     const std::uint64_t enough = status_bytes("VmData:") + more;
     rlimit space{};
     getrlimit(RLIMIT_AS, &space);
@@ -296,8 +296,10 @@ auto read_file(const std::string& path, const Read& read_something) {
   if (!std::filesystem::is_regular_file(path, status)) {
     throw InputError(path + ": cannot read: " + (status ? status.message() : "not a regular file"));
   }
+  const std::uintmax_t size = std::filesystem::file_size(path, status);
+  if (status) throw InputError(path + ": cannot read: " + status.message());
   openvdb::initialize();
-  const MemoryForFile memory(path);
+  const MemoryForFile memory(size);
   try {
     return read_something();
   } catch (const InputError&) {

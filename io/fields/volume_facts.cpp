@@ -17,17 +17,6 @@ namespace {
 // What a file says of how it was made is text of some thousand characters.
 constexpr std::size_t kMostText = std::size_t{1} << 20;
 
-// Sets the lattice, or why there is none.
-template <typename Read>
-void add_lattice(VolumeFacts& facts, const std::string& path, const Read& read) {
-  try {
-    facts.lattice = read();
-  } catch (const InputError& error) {
-    const std::string text = error.what();
-    facts.no_lattice = text.starts_with(path + ": ") ? text.substr(path.size() + 2) : text;
-  }
-}
-
 // --- NPZ ------------------------------------------------------------------------------------------------------------
 
 constexpr std::string_view kNpy = ".npy";
@@ -49,7 +38,7 @@ VolumeFacts npz_facts(const std::string& path) {
     input.check_rest();
   }
   if (facts.arrays.empty()) throw InputError(path + ": has no arrays, expected an NPZ archive");
-  if (archive.find("origin.npy") != nullptr) add_lattice(facts, path, [&] { return read_npz_lattice(path); });
+  if (archive.find("origin.npy") != nullptr) set_lattice(facts, path, [&] { return read_npz_lattice(path); });
   return facts;
 }
 
@@ -84,7 +73,7 @@ VolumeFacts read_volume_facts(const std::string& path) {
   if (!is_image(path)) return npz_facts(path);
   const ImageHead head = read_image_head(path);
   VolumeFacts facts = std::visit([](const auto& format) { return facts_of(format); }, head);
-  add_lattice(facts, path, [&] { return image_lattice(path, head); });
+  set_lattice(facts, path, [&] { return image_lattice(path, head); });
   return facts;
 }
 

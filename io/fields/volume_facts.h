@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/data/placed_lattice.h"
+#include "io/files/file_error.h"
 
 namespace raycone {
 
@@ -32,6 +33,17 @@ struct VolumeFacts {
   std::vector<MadeFact> made;
   std::string made_json;  // the same as an object of JSON, where the format keeps it so; not checked
 };
+
+// The lattice that read() returns or, where it throws InputError about `path`, why there is none.
+template <typename Read>
+void set_lattice(VolumeFacts& facts, const std::string& path, const Read& read) {
+  try {
+    facts.lattice = read();
+  } catch (const InputError& error) {
+    const std::string text = error.what();
+    facts.no_lattice = text.starts_with(path + ": ") ? text.substr(path.size() + 2) : text;
+  }
+}
 
 // Of an NPZ, NRRD or NIfTI-1 file. Throws InputError where it is damaged, or none of these.
 [[nodiscard]] VolumeFacts read_volume_facts(const std::string& path);

@@ -281,11 +281,7 @@ VolumeFacts facts_of(const std::string& path) {
     }
   }
   if (!fields.empty()) facts.made.push_back({"fields", fields});
-  try {
-    facts.lattice = lattice_of(path, grids, first, *heads[first]);
-  } catch (const InputError& error) {
-    facts.no_lattice = std::string(error.what()).substr(path.size() + 2);
-  }
+  set_lattice(facts, path, [&] { return lattice_of(path, grids, first, *heads[first]); });
   return facts;
 }
 

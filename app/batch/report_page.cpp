@@ -372,7 +372,7 @@ std::size_t write_report_page(const ReportCommand& command) {
     warn_of_unreadable_rows(command.directory);
     for (const std::string& line : missing) print_message("warning: " + command.directory + ": " + line);
   }
-  OutputFile output(command.output, command.no_clobber);
+  OutputFile output(command.output, command.existing);
   write_all(output, page(command.directory, records, missing));
   return records.size();
 }

@@ -124,10 +124,14 @@ OptionGroup output_group(const std::string& formats) {
 
 OptionSpec pack_bits_option() { return {"--pack-bits", "", "Store inside as bits in NPZ, as numpy.packbits does"}; }
 
+Existing parse_existing(const Values& values) {
+  return values.given("--no-clobber") ? Existing::kKept : Existing::kReplaced;
+}
+
 OutputFiles parse_output_files(const Values& values) {
   OutputFiles output;
   output.path = values.given("--output") ? values.text("--output") : "-";
-  output.no_clobber = values.given("--no-clobber");
+  output.existing = parse_existing(values);
   if (values.given("--report")) output.report = values.text("--report");
   if (values.given("--depfile")) output.depfile = values.text("--depfile");
   return output;

@@ -21,6 +21,8 @@ namespace raycone {
 // `formats` stands for the value of --format in the help.
 [[nodiscard]] OptionGroup output_group(const std::string& formats);
 
+// --no-clobber
+[[nodiscard]] Existing parse_existing(const Values& values);
 [[nodiscard]] OutputFiles parse_output_files(const Values& values);
 
 // The formats that a command writes.

@@ -92,13 +92,15 @@ Command parse_info(const Values& values) {
   command.format = parse_info_format(values);
   if (values.given("--require")) command.required = parse_requirements(values.text("--require"));
   command.intersections = values.given("--intersections");
-  command.no_clobber = values.given("--no-clobber");
+  command.existing = parse_existing(values);
   if (values.given("--mark")) command.mark = values.text("--mark");
   if (command.mark && *command.mark != "-" && !has_extension(*command.mark, "ply")) {
     throw UsageError("--mark " + *command.mark + ": expected a name that ends in .ply");
   }
   if (command.mark && command.meshes.size() > 1) throw UsageError("--mark " + *command.mark + ": expected one mesh");
-  if (command.no_clobber && !command.mark) throw UsageError("--no-clobber: expected --mark, no other file is written");
+  if (values.given("--no-clobber") && !command.mark) {
+    throw UsageError("--no-clobber: expected --mark, no other file is written");
+  }
   return command;
 }
 

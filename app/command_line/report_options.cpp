@@ -37,7 +37,7 @@ Command parse_report(const Values& values) {
   command.directory = values.text("DIR");
   if (command.directory.empty()) throw UsageError("DIR: expected a directory, not an empty name");
   command.output = values.given("--output") ? values.text("--output") : command.directory + "/report.html";
-  command.no_clobber = values.given("--no-clobber");
+  command.existing = parse_existing(values);
   command.run = parse_run(values);
   return command;
 }

@@ -104,7 +104,7 @@ std::optional<std::string> label_names_path(const LatticeCommand& command) {
 
 std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command, OutputGroup& group) {
   const std::optional<std::string> path = label_names_path(command);
-  return path ? std::make_unique<OutputFile>(*path, command.output.no_clobber, &group) : nullptr;
+  return path ? std::make_unique<OutputFile>(*path, command.output.existing, &group) : nullptr;
 }
 
 void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std::vector<std::string>& inputs) {

@@ -10,6 +10,7 @@
 #include "app/options/lattice_command.h"
 #include "app/options/points_command.h"
 #include "app/options/run_options.h"
+#include "io/files/output_file.h"
 
 namespace raycone {
 
@@ -59,7 +60,7 @@ struct BatchCommand {
 struct ReportCommand {
   std::string directory;  // of a batch
   std::string output;     // "-": standard output
-  bool no_clobber = false;
+  Existing existing = Existing::kReplaced;
   RunOptions run;
 };
 

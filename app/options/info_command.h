@@ -7,6 +7,7 @@
 
 #include "app/options/mesh_options.h"
 #include "app/options/run_options.h"
+#include "io/files/output_file.h"
 
 namespace raycone {
 
@@ -20,10 +21,10 @@ struct InfoCommand {
   std::string for_meshes;           // one of the options that were given and concern meshes only; empty: none
   RunOptions run;
   InfoFormat format = InfoFormat::kText;
-  std::vector<Requirement> required;  // each at most once
-  bool intersections = false;         // counted, even where nothing requires it
-  std::optional<std::string> mark;    // PLY file of the only mesh with its flaws in colour
-  bool no_clobber = false;            // of that file
+  std::vector<Requirement> required;        // each at most once
+  bool intersections = false;               // counted, even where nothing requires it
+  std::optional<std::string> mark;          // PLY file of the only mesh with its flaws in colour
+  Existing existing = Existing::kReplaced;  // such a file
 };
 
 }  // namespace raycone

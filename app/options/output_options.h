@@ -5,12 +5,13 @@
 #include <string>
 
 #include "io/fields/field_writer.h"
+#include "io/files/output_file.h"
 
 namespace raycone {
 
 struct OutputFiles {
   std::string path;  // "-": standard output
-  bool no_clobber = false;
+  Existing existing = Existing::kReplaced;
   std::optional<std::string> report;
   std::optional<std::string> depfile;
 };

@@ -12,7 +12,7 @@ namespace raycone {
 
 MeshRun::MeshRun(const MeshOptions& mesh, const OutputFiles& written, const RunOptions& options,
                  const std::vector<std::string>& inputs, const RunLimits& limits)
-    : output(written.path, written.no_clobber, &files),
+    : output(written.path, written.existing, &files),
       mesh_(mesh),
       written_(written),
       options_(options),
@@ -23,10 +23,10 @@ MeshRun::MeshRun(const MeshOptions& mesh, const OutputFiles& written, const RunO
   report.command = options.words;
   report.options = options.options;
   report.threads = limits.threads();
-  if (written.report) report_file_ = std::make_unique<OutputFile>(*written.report, written.no_clobber, &files);
+  if (written.report) report_file_ = std::make_unique<OutputFile>(*written.report, written.existing, &files);
   if (written.depfile) {
     (void)depfile_text(written.path, inputs);  // throws before the work
-    depfile_ = std::make_unique<OutputFile>(*written.depfile, written.no_clobber, &files);
+    depfile_ = std::make_unique<OutputFile>(*written.depfile, written.existing, &files);
   }
 }
 

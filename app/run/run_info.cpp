@@ -75,7 +75,7 @@ class InfoRun {
         limits_(limits),
         listing_(command.format, command.meshes.size() > 1, counts_intersections()),
         output_("-") {
-    if (command.mark) mark_.emplace(*command.mark, command.no_clobber, &files_);
+    if (command.mark) mark_.emplace(*command.mark, command.existing, &files_);
   }
 
   // Prints the mesh, or the file of values. Returns whether it is what is required.

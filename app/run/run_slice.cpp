@@ -199,8 +199,7 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
   MeshRun run(command.mesh, command.output, command.run, inputs_of(command), limits);
   RunReport& report = run.report;
   std::unique_ptr<OutputFile> values_file;
-  if (command.values)
-    values_file = std::make_unique<OutputFile>(*command.values, command.output.no_clobber, &run.files);
+  if (command.values) values_file = std::make_unique<OutputFile>(*command.values, command.output.existing, &run.files);
   CutMesh cut;
   load(command, run, cut);
   const Box box = cut.parts ? cut.parts->box() : bounding_box(cut.mesh);

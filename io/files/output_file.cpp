@@ -56,8 +56,7 @@ bool rename_to_new(const std::string& from, const std::string& to) {
 }  // namespace
 
 struct OutputFile::State {
-  State(const std::string& path, bool keep_existing, OutputGroup* with)
-      : name(path), no_clobber(keep_existing), group(with) {}
+  State(const std::string& path, Existing old, OutputGroup* with) : name(path), existing(old), group(with) {}
 
   [[noreturn]] void fail(const std::string& what) const {
     throw OutputError((name == "-" ? "standard output" : name) + ": " + what);
@@ -75,7 +74,7 @@ struct OutputFile::State {
   PlacedFile put_in_place();
 
   std::string name;
-  bool no_clobber;
+  Existing existing;
   OutputGroup* group;                      // or null
   std::string target;                      // `name` with links followed, where that is a regular file
   std::optional<TemporaryFile> temporary;  // absent where written to directly
@@ -101,7 +100,7 @@ void OutputFile::State::open() {
     fail("is a directory");
   } else if (exists && !S_ISREG(status.st_mode)) {
     open_special();
-  } else if (exists && no_clobber) {
+  } else if (exists && existing == Existing::kKept) {
     fail("already exists (--no-clobber)");
   } else {
     open_temporary();
@@ -142,7 +141,8 @@ PlacedFile OutputFile::State::put_in_place() {
   const std::string path = temporary->path();
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) fail_writing(errno);
-  const bool renamed = no_clobber ? rename_to_new(path, target) : rename(path.c_str(), target.c_str()) == 0;
+  const bool renamed =
+      existing == Existing::kKept ? rename_to_new(path, target) : rename(path.c_str(), target.c_str()) == 0;
   if (!renamed && errno == EEXIST) fail("already exists (--no-clobber)");
   if (!renamed) fail_writing(errno);
   temporary->renamed();
@@ -150,8 +150,8 @@ PlacedFile OutputFile::State::put_in_place() {
   return {name, static_cast<std::uint64_t>(status.st_size), nanoseconds(status.st_mtim)};
 }
 
-OutputFile::OutputFile(const std::string& path, bool no_clobber, OutputGroup* group)
-    : state_(std::make_shared<State>(path, no_clobber, group)) {
+OutputFile::OutputFile(const std::string& path, Existing existing, OutputGroup* group)
+    : state_(std::make_shared<State>(path, existing, group)) {
   state_->open();
 }
 

@@ -19,14 +19,20 @@ struct PlacedFile {
   std::int64_t modified = 0;  // nanoseconds since 1970
 };
 
+// What becomes of a file that has the output's name already.
+enum class Existing {
+  kReplaced,  // when the output is complete
+  kKept,      // the output is an error (--no-clobber)
+};
+
 // Where output goes: a regular file (written to a temporary file beside it, synced and renamed by commit()), standard
 // output ("-"), or a device, FIFO or /dev/fd/N, written to directly. A symbolic link is followed. The destructor
 // removes an uncommitted temporary file; so does remove_temporary_files() (io/files/temporary_file.h).
 class OutputFile {
  public:
-  // Opens at once, so that what cannot be written fails before the work. With no_clobber an existing file is an error.
+  // Opens at once, so that what cannot be written fails before the work.
   // The `group`, if any, must outlive this. Throws OutputError.
-  explicit OutputFile(const std::string& path, bool no_clobber = false, OutputGroup* group = nullptr);
+  explicit OutputFile(const std::string& path, Existing existing = Existing::kReplaced, OutputGroup* group = nullptr);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

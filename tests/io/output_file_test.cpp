@@ -103,7 +103,8 @@ TEST(OutputFile, KeepsTheOldFileWhenNotCommitted) {
 TEST(OutputGroup, FilesAppearTogether) {
   const TemporaryDirectory directory;
   OutputGroup group;
-  OutputFile first(directory / "first", false, &group), second(directory / "second", false, &group);
+  OutputFile first(directory / "first", Existing::kReplaced, &group),
+      second(directory / "second", Existing::kReplaced, &group);
   write(first, "1");
   first.commit();
   EXPECT_FALSE(std::filesystem::exists(directory / "first"));
@@ -119,7 +120,7 @@ TEST(OutputGroup, FilesAppearTogether) {
 TEST(OutputGroup, TellsWhatItPutInPlace) {
   const TemporaryDirectory directory;
   OutputGroup group;
-  OutputFile file(directory / "out", false, &group), device("/dev/null", false, &group);
+  OutputFile file(directory / "out", Existing::kReplaced, &group), device("/dev/null", Existing::kReplaced, &group);
   write(file, "hello");
   file.commit();
   device.commit();
@@ -137,7 +138,8 @@ TEST(OutputGroup, NoneAppearsWhereOneFails) {
   put(directory / "first", "old");
   {
     OutputGroup group;
-    OutputFile first(directory / "first", false, &group), second("/dev/full", false, &group);
+    OutputFile first(directory / "first", Existing::kReplaced, &group),
+        second("/dev/full", Existing::kReplaced, &group);
     write(first, "new");
     first.commit();
     write(second, "2");
@@ -151,7 +153,7 @@ TEST(OutputGroup, FilesOutliveTheirWriters) {
   const TemporaryDirectory directory;
   OutputGroup group;
   {
-    OutputFile file(directory / "out", false, &group);
+    OutputFile file(directory / "out", Existing::kReplaced, &group);
     write(file, "hello");
     file.commit();
   }
@@ -217,7 +219,7 @@ TEST(OutputFile, FollowsSymbolicLinks) {
 TEST(OutputFile, CreatesTheTargetOfADanglingLink) {
   const TemporaryDirectory directory;
   std::filesystem::create_symlink("missing", directory / "link");
-  OutputFile output(directory / "link", /*no_clobber=*/true);
+  OutputFile output(directory / "link", Existing::kKept);
   write(output, "new");
   output.commit();
   EXPECT_TRUE(std::filesystem::is_symlink(directory / "link"));
@@ -303,7 +305,7 @@ TEST(OutputFile, RefusesADescriptorThatIsNotOpenForWriting) {
 }
 
 TEST(OutputFile, WritesToTheNullDeviceEvenWithNoClobber) {
-  OutputFile output("/dev/null", /*no_clobber=*/true);
+  OutputFile output("/dev/null", Existing::kKept);
   write(output, "hello");
   output.commit();
   EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
@@ -419,7 +421,7 @@ TEST(OutputFile, TakesNamesWithoutDirectory) {
 TEST(OutputFile, NoClobberRefusesAnExistingFileAtOnce) {
   const TemporaryDirectory directory;
   put(directory / "out", "old");
-  EXPECT_EQ(error_of([&] { OutputFile(directory / "out", true); }),
+  EXPECT_EQ(error_of([&] { OutputFile(directory / "out", Existing::kKept); }),
             directory / "out" + ": already exists (--no-clobber)");
   EXPECT_EQ(entries(directory).size(), 1U);
 }
@@ -427,7 +429,7 @@ TEST(OutputFile, NoClobberRefusesAnExistingFileAtOnce) {
 TEST(OutputFile, NoClobberDoesNotReplaceAFileThatAppearedMeanwhile) {
   const TemporaryDirectory directory;
   {
-    OutputFile output(directory / "out", /*no_clobber=*/true);
+    OutputFile output(directory / "out", Existing::kKept);
     put(directory / "out", "theirs");
     EXPECT_EQ(error_of([&] { output.commit(); }), directory / "out" + ": already exists (--no-clobber)");
   }

@@ -53,7 +53,7 @@ std::vector<std::function<void(Command&)>> common_changes() {
           [](Command& c) { c.field.engine = RayEngine::kEmbree; },
           [](Command& c) { c.field.simd = SimdLevel::kAvx2; },
           [](Command& c) { c.output.path = "o.vdb"; },
-          [](Command& c) { c.output.no_clobber = true; },
+          [](Command& c) { c.output.existing = Existing::kKept; },
           [](Command& c) { c.output.report = ""; },
           [](Command& c) { c.output.depfile = "o.d"; },
           [](Command& c) { c.encoding.format = FieldFormat::kNone; },

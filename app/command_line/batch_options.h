@@ -1,3 +1,4 @@
+// raycone batch: its options.
 #pragma once
 
 #include "app/command_line/command_spec.h"

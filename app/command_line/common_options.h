@@ -1,4 +1,4 @@
-// The options that commands share, with their conversion.
+// The options that commands share, with their conversion. Values that an option does not take: UsageError.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-// The options that say what is evaluated, with their conversion.
+// The options that say what is evaluated, with their conversion. Values that an option does not take: UsageError.
 #pragma once
 
 #include "app/command_line/command_spec.h"

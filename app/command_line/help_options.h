@@ -1,3 +1,4 @@
+// raycone help: its operand.
 #pragma once
 
 #include "app/command_line/command_spec.h"

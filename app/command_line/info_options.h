@@ -1,3 +1,4 @@
+// raycone info: its options.
 #pragma once
 
 #include "app/command_line/command_spec.h"

@@ -1,3 +1,4 @@
+// raycone report: its options.
 #pragma once
 
 #include "app/command_line/command_spec.h"

@@ -1,3 +1,4 @@
+// raycone slice: its options.
 #pragma once
 
 #include "app/command_line/command_spec.h"

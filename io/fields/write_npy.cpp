@@ -27,7 +27,7 @@ class NpyLatticeWriter final : public LatticeWriter {
     const std::string head =
         npy_head(elements->descriptor(), shape_of(lattice, description.fields.front().components()));
     output_.write(head.data(), head.size());
-    head_size_ = next_ = head.size();
+    head_size_ = head.size();
     array_.emplace(lattice, std::move(elements));
   }
 
@@ -36,9 +36,8 @@ class NpyLatticeWriter final : public LatticeWriter {
 
   void write(const LatticeBlock& block, std::span<const FieldValues> fields) override {
     array_->write_slab(block, fields.front(), [this](std::uint64_t offset, const char* data, std::size_t size) {
-      if (head_size_ + offset != next_) output_.seek(head_size_ + offset);
+      output_.seek(head_size_ + offset);
       output_.write(data, size);
-      next_ = head_size_ + offset + size;
     });
   }
 
@@ -48,7 +47,6 @@ class NpyLatticeWriter final : public LatticeWriter {
   OutputFile& output_;
   int slab_axis_;
   std::uint64_t head_size_ = 0;
-  std::uint64_t next_ = 0;  // where the output goes on by itself
   std::optional<LatticeArray> array_;
 };
 

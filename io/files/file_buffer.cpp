@@ -76,6 +76,7 @@ FileBuffer::pos_type FileBuffer::seekoff(off_type offset, std::ios_base::seekdir
 }
 
 FileBuffer::pos_type FileBuffer::seekpos(pos_type position, std::ios_base::openmode) {
+  if (error_ == 0 && position == pos_type(start_ + (pptr() - pbase()))) return position;  // it goes on by itself
   if (sync() != 0) return pos_type(off_type(-1));
   start_ = position;
   if (lseek(descriptor_, start_, SEEK_SET) < 0) error_ = errno;

@@ -8,7 +8,8 @@
 namespace raycone {
 
 // Does not own the descriptor. The first failure sticks: error() tells it and everything after it fails too. Positions
-// count from the first byte written here; they can be sought only where the descriptor can and began at its byte 0.
+// count from the first byte written here; others than the one where it is can be sought only where the descriptor can
+// and began at its byte 0.
 class FileBuffer : public std::streambuf {
  public:
   explicit FileBuffer(int descriptor);

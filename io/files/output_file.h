@@ -42,7 +42,7 @@ class OutputFile {
   void reserve(std::uint64_t bytes);
   // Appends, or goes on where seek() went; throws OutputError (a closed pipe raises SIGPIPE).
   void write(const void* data, std::size_t size);
-  // Goes on at `offset`, which may lie behind all that has been written; only where seekable().
+  // Goes on at `offset`, which may lie behind all that has been written; only where seekable(), unless it is there.
   void seek(std::uint64_t offset);
   // Replaces bytes already written; only where seekable().
   void overwrite(std::uint64_t offset, const void* data, std::size_t size);

@@ -265,6 +265,25 @@ TEST(OutputFile, WritesToANamedDescriptor) {
   close(ends[0]);
 }
 
+TEST(OutputFile, SeeksOnAPipeToWhereItIsAndNowhereElse) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  {
+    OutputFile output("/dev/fd/" + std::to_string(ends[1]));
+    write(output, "ab");
+    output.seek(2);
+    write(output, "c");
+    output.flush();
+    output.seek(3);
+    EXPECT_THROW(output.seek(1), OutputError);
+  }
+  close(ends[1]);
+  char text[4] = {};
+  EXPECT_EQ(read(ends[0], text, sizeof text), 3);
+  EXPECT_STREQ(text, "abc");
+  close(ends[0]);
+}
+
 // The link there reads "pipe:[...]".
 TEST(OutputFile, WritesToAPipeOfAnyProcess) {
   std::array<int, 2> ends{};

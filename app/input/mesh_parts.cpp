@@ -103,6 +103,20 @@ void MeshParts::keep_all() {
     part_of.resize(all.triangles.size(), static_cast<std::uint32_t>(file));
   }
   transform_ = normalize_mesh(all, options_);
+  name_parts(all, part_of);
+  split_.emplace(std::move(all), part_of, static_cast<std::uint32_t>(names_.size()));
+  if (options_.weld.mode != WeldMode::kDistance) {
+    box_ = bounding_box(whole());
+  } else if (files_.size() == 1) {
+    box_ = welded_box(whole());
+  } else {
+    for (std::uint32_t file = 0; file < files_.size(); ++file) extend_box(welded_box(split_->part(file)));
+  }
+}
+
+// Names the parts of `all` and tells of each triangle its part. `part_of`: of each its file. Components are found among
+// welded triangles.
+void MeshParts::name_parts(TriangleMesh& all, std::vector<std::uint32_t>& part_of) {
   if (options_.parts.by == PartsBy::kFile) {
     for (const File& file : files_) names_.push_back(stem_of(file.read.path));
   } else if (options_.parts.by == PartsBy::kGroup) {
@@ -113,14 +127,6 @@ void MeshParts::keep_all() {
     const Components components = components_of(all);
     for (std::size_t f = 0; f < part_of.size(); ++f) part_of[f] = components.of_vertex[all.triangles[f][0]];
     for (std::uint32_t n = 0; n < components.count; ++n) names_.push_back("component " + std::to_string(n + 1));
-  }
-  split_.emplace(std::move(all), part_of, static_cast<std::uint32_t>(names_.size()));
-  if (options_.weld.mode != WeldMode::kDistance) {
-    box_ = bounding_box(whole());
-  } else if (files_.size() == 1) {
-    box_ = welded_box(whole());
-  } else {
-    for (std::uint32_t file = 0; file < files_.size(); ++file) extend_box(welded_box(split_->part(file)));
   }
 }
 

@@ -57,6 +57,7 @@ class MeshParts {
   void keep_some();
   [[nodiscard]] Box welded_box(TriangleMesh mesh) const;
   void extend_box(const Box& box) { box_ = hull(box_, box); }
+  void name_parts(TriangleMesh& all, std::vector<std::uint32_t>& part_of);
   void name_groups(std::vector<std::uint32_t>& part_of);
 
   const MeshOptions& options_;

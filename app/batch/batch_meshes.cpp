@@ -136,13 +136,13 @@ void refuse_missing_directory(const std::string& path) {
   }
 }
 
-void add_operand(const std::string& operand, bool nul_separated_lists, FoundMeshes& found) {
+void add_operand(const std::string& operand, PathEnd path_end, FoundMeshes& found) {
   if (operand.empty() || operand == "@")
     throw UsageError("MESH|DIR|@LIST: expected a mesh, a directory or a list, not an empty name");
   if (operand.starts_with('@') || operand == "-") {
     const std::string list = operand == "-" ? operand : operand.substr(1);
     constexpr const char* kHint = "; -0 reads lists whose paths end with NUL";
-    for (const std::string& path : paths_in_list(read_list(list), list, nul_separated_lists, kHint)) {
+    for (const std::string& path : paths_in_list(read_list(list), list, path_end, kHint)) {
       add_path(path == "-" ? "./-" : path, found);  // a file, not standard input
     }
   } else {
@@ -205,7 +205,7 @@ bool same_file(const BatchMesh& a, const BatchMesh& b) {
 FoundMeshes find_meshes(const MeshSearch& search) {
   FoundMeshes found;
   std::vector<BatchMesh>& meshes = found.meshes;
-  for (const std::string& operand : search.operands) add_operand(operand, search.nul_separated_lists, found);
+  for (const std::string& operand : search.operands) add_operand(operand, search.path_end, found);
   std::ranges::stable_sort(meshes, {}, &BatchMesh::name);
   meshes.erase(std::unique(meshes.begin(), meshes.end(), same_file), meshes.end());
   for (BatchMesh& mesh : meshes) mesh.output = output_name(mesh.name, search);

@@ -186,7 +186,7 @@ Command parse_batch(const Values& values) {
   if (values.given("--null") && std::ranges::none_of(operands, is_list)) {
     throw UsageError("--null: has no effect without a list, expected an operand @LIST");
   }
-  command.search = {operands, values.given("--null"), full_names, format};
+  command.search = {operands, values.given("--null") ? PathEnd::kNul : PathEnd::kLineFeed, full_names, format};
   if (values.given("--shard")) command.shard = parse_shard(values.text("--shard"));
   command.run = parse_run(values);
   if (values.given("--jobs")) command.jobs = static_cast<int>(values.integer("--jobs", 1, kMaxJobs));

@@ -26,15 +26,16 @@ std::string read_list(const std::string& list) {
   return read_file(list, available_memory() / kMemoryPerByte);
 }
 
-std::vector<std::string> paths_in_list(std::string_view text, const std::string& list, bool nul_separated,
+std::vector<std::string> paths_in_list(std::string_view text, const std::string& list, PathEnd end,
                                        const std::string& hint) {
-  if (!nul_separated) text = without_byte_order_mark(text);
+  const bool are_lines = end == PathEnd::kLineFeed;
+  if (are_lines) text = without_byte_order_mark(text);
   std::vector<std::string> paths;
   for (std::size_t number = 1; !text.empty(); ++number) {
-    std::string_view line = text.substr(0, text.find(nul_separated ? '\0' : '\n'));
+    std::string_view line = text.substr(0, text.find(are_lines ? '\n' : '\0'));
     text.remove_prefix(std::min(line.size() + 1, text.size()));
-    if (!nul_separated && line.ends_with('\r')) line.remove_suffix(1);
-    if (line.empty() || (!nul_separated && is_blank_or_comment(line))) continue;
+    if (are_lines && line.ends_with('\r')) line.remove_suffix(1);
+    if (line.empty() || (are_lines && is_blank_or_comment(line))) continue;
     if (line.find('\0') != std::string_view::npos) {
       throw InputError(list + ':' + std::to_string(number) + ": holds a NUL, expected a path of text" + hint);
     }
@@ -60,7 +61,7 @@ MeshOptions with_listed_meshes(const MeshOptions& mesh, const std::string& point
     }
     const std::string list = operand.substr(1);
     expanded.lists.push_back(list);
-    const std::vector<std::string> listed = paths_in_list(read_list(list), list, false);
+    const std::vector<std::string> listed = paths_in_list(read_list(list), list, PathEnd::kLineFeed);
     if (listed.empty()) throw InputError(list + ": names no mesh, expected one a line");
     paths.insert(paths.end(), listed.begin(), listed.end());
   }

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "app/options/batch_command.h"
 #include "app/options/mesh_options.h"
 
 namespace raycone {
@@ -15,9 +16,9 @@ namespace raycone {
 
 // The paths in `text`, in its order. One a line: a carriage return at its end and a byte order mark at the start of the
 // text are no part of it; lines of blanks only, and comments, whose first character that is no blank is #, are none.
-// With `nul_separated` each path ends with NUL, and none is a comment. Throws InputError, with the name of the list and
+// With PathEnd::kNul each path ends so, and none is a comment. Throws InputError, with the name of the list and
 // the line, for a line that holds a NUL: no path does. `hint` is what may help then.
-[[nodiscard]] std::vector<std::string> paths_in_list(std::string_view text, const std::string& list, bool nul_separated,
+[[nodiscard]] std::vector<std::string> paths_in_list(std::string_view text, const std::string& list, PathEnd end,
                                                      const std::string& hint = {});
 
 // The meshes of a job with labels, with those of the lists among them (@LIST) in their place. `points`: what else is

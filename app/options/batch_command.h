@@ -23,10 +23,13 @@ using MeshCommand = std::variant<LatticeCommand, PointsCommand>;
   return lattice ? std::get_if<GridReference>(&lattice->lattice) : nullptr;
 }
 
+// What is behind each path of a list.
+enum class PathEnd { kLineFeed, kNul };
+
 // Which meshes a batch is about, and the outputs they are to have.
 struct MeshSearch {
   std::vector<std::string> operands;  // MESH, DIR, @LIST, and @- or - for a list on standard input
-  bool nul_separated_lists = false;
+  PathEnd path_end = PathEnd::kLineFeed;
   bool full_names = false;  // outputs keep the extension of the mesh
   std::string extension;    // of outputs, without the dot
 };

@@ -27,7 +27,7 @@ class BatchMeshes : public testing::Test {
 
   [[nodiscard]] static std::vector<BatchMesh> find(const std::vector<std::string>& operands, bool full_names = false,
                                                    bool nul = false) {
-    return find_meshes({operands, nul, full_names, "vdb"}).meshes;
+    return find_meshes({operands, nul ? PathEnd::kNul : PathEnd::kLineFeed, full_names, "vdb"}).meshes;
   }
 
   [[nodiscard]] static std::vector<std::string> names(const std::vector<BatchMesh>& meshes) {

@@ -70,7 +70,8 @@ inline void write_all(OutputFile& file, std::string_view text) {
 }
 
 // Files that appear together: those that have been committed wait for commit() of the group. Where one of them cannot
-// be written, none appears. Members may be destroyed before.
+// be written, none appears; only one that cannot be renamed has others before it in place. Members may be destroyed
+// before.
 class OutputGroup {
  public:
   // Renames them, in the order in which they were committed, and returns them. Throws OutputError; those before are in

@@ -109,12 +109,16 @@ def near_limits(mesh, out, count):
 def check_bytes_near_limits(mesh, out):
     """Whatever a limit is, a run that says that it succeeded has written all: where memory ends while the file is written, too."""
     words = ["lattice", mesh, "-o", out + ".vdb", "--field", "sdf", "--resolution", "160"]
-    contents = lambda: open(out + ".vdb", "rb").read()
-    enough = 1 << 10  # megabytes
+
+    def contents():
+        with open(out + ".vdb", "rb") as file:
+            return file.read()
+
     step = 256  # kilobytes
-    if Run("bytes", words, f"{enough}M", 1).status != 0:
+    low, high = (16 << 10) // step, (256 << 10) // step  # too little, and enough
+    if Run("bytes", words, f"{high * step}k", 1).status != 0:
         return ["bytes: too little memory"]
-    whole, low, high = contents(), 0, (enough << 10) // step
+    whole = contents()
     while high - low > 1:
         middle = (low + high) // 2
         if Run("bytes", words, f"{middle * step}k", 1).status == 0:
@@ -122,12 +126,12 @@ def check_bytes_near_limits(mesh, out):
         else:
             low = middle
     wrong, made = [], 0
-    for n in range(high - 4, high + 20):
+    for n in range(high - 2, high + 16):
         run = Run("bytes", words, f"{n * step}k", 1)
         made += run.status == 0
         if not run.is_right() or run.status == 0 and contents() != whole:
             wrong.append(f"{run} {run.message}, {len(contents())} bytes of {len(whole)}")
-    return wrong if made > 10 else wrong + [f"bytes: only {made} runs from {high * step} kB on have succeeded"]
+    return wrong if made > 8 else wrong + [f"bytes: only {made} runs from {high * step} kB on have succeeded"]
 
 
 def check_batch(meshes, limit, out, runs):

@@ -4,7 +4,6 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
-#include <utility>
 
 namespace raycone {
 
@@ -23,7 +22,7 @@ class BuiltOnce {
     return *value_;
   }
 
-  // Null where no call of get() has returned.
+  // Null until it is made.
   [[nodiscard]] const T* if_built() const { return built_.load(std::memory_order_acquire); }
 
  private:

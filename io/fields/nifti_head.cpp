@@ -68,7 +68,7 @@ std::array<Vec3, 3> qform_columns(const NiftiHead& head) {
   std::array<Vec3, 3> nearest;
   for (std::size_t a = 0; a < 3; ++a) {
     for (int row = 0; row < 3; ++row) {
-      nearest[a][row] = std::round(columns[a][row]);
+      nearest[a][row] = std::round(columns[a][row]) + 0.0;  // no negative zero
       if (!(std::abs(columns[a][row] - nearest[a][row]) <= kRounding)) return columns;
     }
   }

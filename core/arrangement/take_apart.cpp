@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <functional>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <set>
 #include <span>
@@ -103,7 +104,12 @@ class Fans {
 class Apart {
  public:
   Apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, const ApartOptions& options)
-      : border_(border), sources_(sources), options_(options) {}
+      : border_(border), sources_(sources), options_(options), originals_(border.vertices.size()) {
+    std::iota(originals_.begin(), originals_.end(), 0);
+  }
+
+  // Of each vertex the one that it is a copy of, or itself.
+  [[nodiscard]] std::vector<std::uint32_t>& originals() { return originals_; }
 
   bool take() {
     constexpr int kRounds = 8;  // a face has three edges; more only go on where faces lie on each other
@@ -157,7 +163,8 @@ class Apart {
   }
 
   void halve_edge(std::uint32_t low, std::uint32_t high, const std::vector<std::uint32_t>& faces) {
-    const std::uint32_t middle = add_vertex(0.5 * border_.vertices[low] + 0.5 * border_.vertices[high]);
+    const Vec3 halfway = 0.5 * border_.vertices[low] + 0.5 * border_.vertices[high];
+    const std::uint32_t middle = add_vertex(halfway, static_cast<std::uint32_t>(border_.vertices.size()));
     for (const std::uint32_t face : faces) {
       Triangle other = border_.triangles[face];
       std::ranges::replace(border_.triangles[face], high, middle);
@@ -198,14 +205,36 @@ class Apart {
       if (fans_of_vertex.size() > kMostCones) return false;
       std::vector<FanCone> cones;
       for (const auto& [root, faces] : fans_of_vertex) cones.emplace_back(border_, vertex, faces);
-      const bool are_there = options_.against_perturbation ? add_moves_against(vertex, cones, moves)
-                                                           : add_moves_inside(vertex, cones, moves, cuts);
-      if (!are_there) return false;
+      if (!add_moves(vertex, cones, moves, cuts)) return false;
     }
     if (cuts.size() > kMostCuts) return false;
     for (const Move& move : moves) give_copy(move.vertex, move.to, move.faces);
     for (Cut& cut : cuts) cut.vertex = give_copy(cut.vertex, border_.vertices[cut.vertex], cut.faces);
     return std::ranges::all_of(cuts, [&](const Cut& cut) { return apply(cut); });
+  }
+
+  struct Way {
+    bool against_perturbation;
+    double distance;
+  };
+  // What is left to try at a vertex, the first one first.
+  [[nodiscard]] std::vector<Way> ways_at(std::uint32_t vertex) const {
+    constexpr double kFarther = 4.0;
+    const bool first = options_.against_perturbation;
+    const double near = options_.distance, far = kFarther * near;
+    std::vector<Way> ways{{first, near}, {!first, near}, {first, far}, {!first, far}};
+    const std::size_t in_vain = vertex < options_.in_vain.size() ? options_.in_vain[vertex] : 0;
+    ways.erase(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(std::min(in_vain, ways.size())));
+    return ways;
+  }
+
+  // Whether there is a way.
+  bool add_moves(std::uint32_t vertex, const std::vector<FanCone>& cones, std::vector<Move>& moves,
+                 std::vector<Cut>& cuts) {
+    return std::ranges::any_of(ways_at(vertex), [&](const Way& way) {
+      return way.against_perturbation ? add_moves_against(vertex, cones, way.distance, moves)
+                                      : add_moves_inside(vertex, cones, way.distance, moves, cuts);
+    });
   }
 
   static std::vector<Vec3> ways_along_others(const std::vector<FanCone>& cones, std::size_t n) {
@@ -268,7 +297,8 @@ class Apart {
 
   // The first fan stays, and each other one goes farther than those before it, away from them. Of two that may leave
   // each other, the one that is ahead at the other ends of their edges is ahead, or the one whose faces are.
-  bool add_moves_against(std::uint32_t vertex, const std::vector<FanCone>& cones, std::vector<Move>& moves) {
+  bool add_moves_against(std::uint32_t vertex, const std::vector<FanCone>& cones, double distance,
+                         std::vector<Move>& moves) {
     const std::size_t count = cones.size();
     const Vec3 way = way_against(1.0, 1.0);
     std::vector<std::vector<bool>> leaves(count, std::vector<bool>(count, false));
@@ -286,12 +316,14 @@ class Apart {
     }
     std::ranges::sort(order);
     for (std::size_t i = 0; i < count; ++i) {
-      const FanCone& cone = cones[order[i].second];
       for (std::size_t j = 0; j < i; ++j) {
         if (!leaves[order[i].second][order[j].second]) return false;
       }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const FanCone& cone = cones[order[i].second];
       for (const std::uint32_t face : cone.faces()) steps_[{face, vertex}] = static_cast<int>(i);
-      const Vec3 step = static_cast<double>(i) * options_.distance * way_of(cones, order[i].second);
+      const Vec3 step = static_cast<double>(i) * distance * way_of(cones, order[i].second);
       if (i > 0) moves.push_back({vertex, cone.faces(), border_.vertices[vertex] + step});
     }
     return true;
@@ -313,14 +345,15 @@ class Apart {
     return ahead;
   }
 
-  bool add_moves_inside(std::uint32_t vertex, const std::vector<FanCone>& cones, std::vector<Move>& moves,
-                        std::vector<Cut>& cuts) const {
+  bool add_moves_inside(std::uint32_t vertex, const std::vector<FanCone>& cones, double distance,
+                        std::vector<Move>& moves, std::vector<Cut>& cuts) const {
+    std::vector<Move> own_moves;
     std::vector<std::size_t> stuck;
     for (std::size_t n = 0; n < cones.size(); ++n) {
       const bool may_stay = stuck.empty() && n + 1 == cones.size();
       const std::optional<Vec3> way = may_stay ? std::nullopt : cones[n].way_from(ways_along_others(cones, n));
       if (way) {
-        moves.push_back({vertex, cones[n].faces(), border_.vertices[vertex] + options_.distance * *way});
+        own_moves.push_back({vertex, cones[n].faces(), border_.vertices[vertex] + distance * *way});
       } else {
         stuck.push_back(n);
       }
@@ -330,10 +363,11 @@ class Apart {
     for (const std::size_t n : stuck) sides[n] = cones[n].side_of_lid();
     std::ranges::stable_sort(stuck, std::greater(),
                              [&](std::size_t n) { return std::pair(!sides[n], cones[n].faces().size()); });
+    if (std::any_of(stuck.begin() + 1, stuck.end(), [&](std::size_t n) { return !sides[n]; })) return false;
     for (std::size_t i = 1; i < stuck.size(); ++i) {
-      if (!sides[stuck[i]]) return false;
       cuts.push_back({vertex, cones[stuck[i]].faces(), *sides[stuck[i]]});
     }
+    moves.insert(moves.end(), own_moves.begin(), own_moves.end());
     return true;
   }
 
@@ -346,13 +380,14 @@ class Apart {
     }
   }
 
-  std::uint32_t add_vertex(const Vec3& p) {
+  std::uint32_t add_vertex(const Vec3& p, std::uint32_t original) {
     border_.vertices.push_back(rounded(p));
+    originals_.push_back(original);
     return static_cast<std::uint32_t>(border_.vertices.size() - 1);
   }
 
   std::uint32_t give_copy(std::uint32_t vertex, const Vec3& at, const std::vector<std::uint32_t>& faces) {
-    const std::uint32_t copy = add_vertex(at);
+    const std::uint32_t copy = add_vertex(at, vertex);
     for (const std::uint32_t face : faces) std::ranges::replace(border_.triangles[face], vertex, copy);
     return copy;
   }
@@ -394,7 +429,8 @@ class Apart {
     if (!lid) return false;
     std::vector<std::uint32_t> ends{cut.vertex};  // which is free now
     border_.vertices[cut.vertex] = rounded(apex + kOfEdge * steps[0]);
-    for (std::size_t n = 1; n < steps.size(); ++n) ends.push_back(add_vertex(apex + kOfEdge * steps[n]));
+    for (std::size_t n = 1; n < steps.size(); ++n)
+      ends.push_back(add_vertex(apex + kOfEdge * steps[n], originals_[cut.vertex]));
     for (std::size_t n = 0; n < corners.size(); ++n) {
       const std::size_t m = (n + 1) % corners.size();
       border_.triangles[faces[n]] = {ends[n], corners[n], corners[m]};
@@ -411,14 +447,18 @@ class Apart {
 
   TriangleMesh& border_;
   std::vector<std::uint32_t>& sources_;
-  ApartOptions options_;
+  const ApartOptions& options_;
+  std::vector<std::uint32_t> originals_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> steps_;  // of faces at corners, how many along the way
 };
 
 }  // namespace
 
-bool take_apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, const ApartOptions& options) {
-  return Apart(border, sources, options).take();
+std::optional<std::vector<std::uint32_t>> take_apart(TriangleMesh& border, std::vector<std::uint32_t>& sources,
+                                                     const ApartOptions& options) {
+  Apart apart(border, sources, options);
+  if (!apart.take()) return std::nullopt;
+  return std::move(apart.originals());
 }
 
 }  // namespace raycone

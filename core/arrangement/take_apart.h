@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
@@ -15,16 +16,23 @@ struct ApartOptions {
   // along z than along y; those of several fans farther and farther. What lies on faces is then on the side of all of
   // them that it is on as perturbed.
   bool against_perturbation = false;
+  // Of each vertex how many ways left faults there before, also of those that halve edges; none of those beyond the
+  // end. The next way is taken there: first into insides, or against the perturbation, as the others go; then the other
+  // one of the two; then both again, four times as far. A way that there is not is passed over, also where none was.
+  std::vector<std::uint8_t> in_vain{};
 };
 
 // Makes a 2-manifold of the border of a solid: where it touches itself in a vertex or along an edge, each part of the
 // solid gets a vertex of its own, which all of them but one have moved into their insides by the distance, or out of
 // them where that is the way to go, or against the perturbation. Where there is no way into a part, its corner is cut
 // off, by 2^-12 of each edge. Faces along an edge belong together where the solid is between them. An edge along which
-// that leaves two parts the same two ends is halved. `sources`: of each triangle, and so of its halves. False, and the
-// border is left half done, where it has no two sides, as where of more than two faces at an edge one lies on another,
-// or two parts cannot be moved, nor be cut off. Whether what is moved meets nothing must be looked at after it.
-// Precondition: every edge has as many faces in either direction. Needs DefaultFloatingPoint.
-[[nodiscard]] bool take_apart(TriangleMesh& border, std::vector<std::uint32_t>& sources, const ApartOptions& options);
+// that leaves two parts the same two ends is halved. `sources`: of each triangle, and so of its halves. Returns of each
+// vertex the one that it is a part's own copy of, or itself. Nothing, and the border is left half done, where it has no
+// two sides, as where of more than two faces at an edge one lies on another, or two parts cannot be moved, nor be cut
+// off. Whether what is moved meets nothing must be looked at after it. Precondition: every edge has as many faces in
+// either direction. Needs DefaultFloatingPoint.
+[[nodiscard]] std::optional<std::vector<std::uint32_t>> take_apart(TriangleMesh& border,
+                                                                   std::vector<std::uint32_t>& sources,
+                                                                   const ApartOptions& options);
 
 }  // namespace raycone

@@ -254,6 +254,18 @@ bool is_closed_and_embedded(const TriangleMesh& mesh) {
          !first_self_intersection(mesh, &fans.graphs);
 }
 
+std::vector<std::uint32_t> vertices_at_faults(const TriangleMesh& mesh) {
+  const Fans fans = fans_of(mesh);
+  std::vector<std::uint8_t> faulty = fans.wrong;
+  equal_vertices(mesh.vertices, &faulty);
+  const SelfIntersections found = self_intersections(mesh, SearchOrder::kRuns, &fans.graphs);
+  for (std::size_t face = 0; face < mesh.triangles.size(); ++face) {
+    if (!found.of_triangle[face] && !is_degenerate(mesh, face)) continue;
+    for (const std::uint32_t corner : mesh.triangles[face]) faulty[corner] = 1;
+  }
+  return numbers_where(faulty.size(), [&](std::uint32_t v) { return faulty[v] != 0; });
+}
+
 NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside, const std::vector<ExteriorEdge>* edges) {
   const WindingNumberEvaluator surface(mesh, {.edges = edges});
   NodeSet nodes = nodes_inside(surface, Rule{}, inside.lattice());

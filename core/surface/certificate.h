@@ -36,6 +36,9 @@ struct SurfaceFaults {
 // Whether a mesh has none of these faults, but for nodes and places. Sooner where it has any.
 [[nodiscard]] bool is_closed_and_embedded(const TriangleMesh& mesh);
 
+// The vertices at these faults, in increasing order.
+[[nodiscard]] std::vector<std::uint32_t> vertices_at_faults(const TriangleMesh& mesh);
+
 // The nodes of the lattice that are on the other side of a closed mesh than `inside` has them.
 // `edges`: its exterior edges, where known, to spare finding them.
 [[nodiscard]] NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside,

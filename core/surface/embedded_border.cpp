@@ -44,17 +44,49 @@ bool may_be_closed(const TriangleMesh& mesh) {
   return false;
 }
 
+bool is_same(const TriangleMesh& one, const TriangleMesh& other) {
+  return one.triangles == other.triangles && one.vertices == other.vertices;
+}
+
 // Makes `sources`, triangles of another border, what the sources of these are.
 void look_through(std::vector<std::uint32_t>& sources, const std::vector<std::uint32_t>& beyond) {
   for (std::uint32_t& source : sources) source = beyond[source];
 }
 
-std::optional<SurfaceMesh> taken_apart(RuleBorder border, const ApartOptions& options) {
-  if (!take_apart(border.mesh, border.sources, options)) return std::nullopt;
-  if (!is_closed_and_embedded(border.mesh)) return std::nullopt;
-  SurfaceMesh surface{std::move(border.mesh), {border.sources.begin(), border.sources.end()}};
-  if (!keep_border(surface, Rule{})) return std::nullopt;  // rounding may have turned flat components over
-  return surface;
+// Counts the ways that were in vain, those of vertices with copies where there are faults. Whether there were any.
+// `originals`: of each vertex the one that it is a copy of, or itself.
+bool count_in_vain(const TriangleMesh& apart, const std::vector<std::uint32_t>& originals,
+                   std::vector<std::uint8_t>& in_vain) {
+  std::vector<std::uint8_t> has_copies(originals.size(), 0), is_faulty(originals.size(), 0);
+  for (std::size_t v = 0; v < originals.size(); ++v) {
+    if (originals[v] != v) has_copies[originals[v]] = 1;
+  }
+  for (const std::uint32_t v : vertices_at_faults(apart)) is_faulty[originals[v]] = 1;
+  in_vain.resize(originals.size(), 0);
+  bool any = false;
+  for (std::size_t v = 0; v < originals.size(); ++v) {
+    if (has_copies[v] == 0 || is_faulty[v] == 0) continue;
+    ++in_vain[v];
+    any = true;
+  }
+  return any;
+}
+
+// Nearly everywhere the first way does. Where there are faults after it, others are tried there alone.
+std::optional<SurfaceMesh> taken_apart(const RuleBorder& border, ApartOptions options) {
+  constexpr int kTries = 3;  // two do in nearly all cases
+  for (int tries = 0; tries < kTries; ++tries) {
+    auto [mesh, sources] = border;
+    const std::optional<std::vector<std::uint32_t>> originals = take_apart(mesh, sources, options);
+    if (!originals) return std::nullopt;
+    if (is_closed_and_embedded(mesh)) {
+      SurfaceMesh surface{std::move(mesh), {sources.begin(), sources.end()}};
+      if (!keep_border(surface, Rule{})) return std::nullopt;  // rounding may have turned flat components over
+      return surface;
+    }
+    if (!count_in_vain(mesh, *originals, options.in_vain)) return std::nullopt;
+  }
+  return std::nullopt;
 }
 
 bool has_all_nodes_right(const SurfaceMesh& surface, const NodeSet& inside) {
@@ -77,7 +109,7 @@ std::optional<SurfaceMesh> taken_apart_beside(const NodeSet& inside, const RuleB
 
 std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const NodeSet& inside,
                                            const SurfaceOptions& options) {
-  constexpr int kRounds = 3;
+  constexpr int kRounds = 2;                                  // the second one hardly ever does more
   constexpr double kApart = 0x1p-30, kApartRoundings = 32.0;  // the larger one, voxels
   constexpr double kNear = 16.0, kFarther = 16.0;             // roundings, and so many times that the next time
   const bool single_precision = options.single_precision;
@@ -86,12 +118,19 @@ std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const NodeS
   const ApartOptions as{std::max(kApart * inside.lattice().least_spacing(), kApartRoundings * rounding),
                         single_precision};
   std::optional<RuleBorder> border = rule_border(mesh, {options.rule, single_precision, kMostPairs});
+  TriangleMesh in_vain;
+  const auto surface_of_border = [&]() -> std::optional<SurfaceMesh> {
+    if (is_same(border->mesh, in_vain)) return std::nullopt;
+    std::optional<SurfaceMesh> surface = taken_apart_beside(inside, *border, as);
+    if (!surface) in_vain = border->mesh;
+    return surface;
+  };
   double near = kNear * rounding;
   for (int round = 0; border && !border->sources.empty(); ++round, near *= kFarther) {
-    if (std::optional<SurfaceMesh> surface = taken_apart_beside(inside, *border, as)) return surface;
+    if (std::optional<SurfaceMesh> surface = surface_of_border()) return surface;
     if (round == kRounds) break;
     snap(*border, near);
-    if (std::optional<SurfaceMesh> surface = taken_apart_beside(inside, *border, as)) return surface;
+    if (std::optional<SurfaceMesh> surface = surface_of_border()) return surface;
     std::optional<RuleBorder> again = rule_border(border->mesh, {Rule{}, single_precision, kMostPairs});
     if (again) look_through(again->sources, border->sources);
     border = std::move(again);

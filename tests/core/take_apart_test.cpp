@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -32,7 +33,7 @@ struct Taken {
 Taken taken_apart(const TriangleMesh& mesh, bool single_precision = false) {
   Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
   std::iota(taken.sources.begin(), taken.sources.end(), 0);
-  taken.is_apart = take_apart(taken.mesh, taken.sources, {kDistance, single_precision});
+  taken.is_apart = take_apart(taken.mesh, taken.sources, {kDistance, single_precision}).has_value();
   return taken;
 }
 
@@ -184,7 +185,8 @@ TEST(TakeApart, MovesTheOneThatLeaves) {
                                       {{0, 0, 1}, {1, 1, 0}}}) {
     for (const TriangleMesh& mesh : {test::cells_mesh({first, second}), test::cells_mesh({second, first})}) {
       Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
-      EXPECT_TRUE(take_apart(taken.mesh, taken.sources, {.distance = kDistance, .against_perturbation = true}));
+      EXPECT_TRUE(
+          take_apart(taken.mesh, taken.sources, {.distance = kDistance, .against_perturbation = true}).has_value());
       EXPECT_TRUE(is_closed_and_embedded(taken.mesh));
     }
   }
@@ -205,7 +207,8 @@ TEST(TakeApart, KeepsNodesOnTheirSides) {
     if (is_closed_and_embedded(mesh)) continue;
     ++touching;
     Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
-    taken.is_apart = take_apart(taken.mesh, taken.sources, {.distance = kDistance, .against_perturbation = true});
+    taken.is_apart =
+        take_apart(taken.mesh, taken.sources, {.distance = kDistance, .against_perturbation = true}).has_value();
     if (!taken.is_apart || !is_closed_and_embedded(taken.mesh)) continue;
     ++apart;
     const NodeSet before = nodes(mesh);
@@ -234,13 +237,50 @@ TEST(TakeApart, KeepsNodesNextToFacesThatNeedNotMove) {
     if (is_closed_and_embedded(mesh)) continue;
     ++touching;
     Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
-    ASSERT_TRUE(take_apart(taken.mesh, taken.sources, {.distance = kDistance, .against_perturbation = true}));
+    ASSERT_TRUE(
+        take_apart(taken.mesh, taken.sources, {.distance = kDistance, .against_perturbation = true}).has_value());
     ASSERT_TRUE(is_closed_and_embedded(taken.mesh));
     NodeSet after = nodes_inside(WindingNumberEvaluator(taken.mesh), Rule{}, lattice);
     after.flip(nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice));
     EXPECT_TRUE(after.empty()) << round;
   }
   EXPECT_GT(touching, 8);
+}
+
+// Two plates thinner than vertices move, in an edge: both its ends move past each other, into the inside, but not
+// against the perturbation.
+TEST(TakeApart, GoesTheNextWayWhereOneWasInVain) {
+  const TriangleMesh plates = test::moved(test::cells_mesh({{0, 0, 0}, {1, 1, 0}}), {1, 1, kDistance / 4}, {0, 0, 0});
+  const auto taken_after = [&](const std::vector<std::uint8_t>& in_vain) {
+    Taken taken{plates, std::vector<std::uint32_t>(plates.triangles.size()), false};
+    taken.is_apart = take_apart(taken.mesh, taken.sources, {.distance = kDistance, .in_vain = in_vain}).has_value();
+    return taken;
+  };
+  const std::size_t vertices = plates.vertices.size();
+  const Taken first = taken_after({}), second = taken_after(std::vector<std::uint8_t>(vertices, 1));
+  EXPECT_TRUE(first.is_apart);
+  EXPECT_FALSE(is_closed_and_embedded(first.mesh));
+  EXPECT_TRUE(second.is_apart);
+  EXPECT_TRUE(is_closed_and_embedded(second.mesh));
+  EXPECT_FALSE(taken_after(std::vector<std::uint8_t>(vertices, 4)).is_apart);  // there are no more
+}
+
+TEST(TakeApart, TellsWhatVerticesAreCopiesOf) {
+  test::Random random(7);
+  for (int round = 0; round < 50; ++round) {
+    const TriangleMesh mesh = test::random_cells(random, 3);
+    TriangleMesh apart = mesh;
+    std::vector<std::uint32_t> sources(mesh.triangles.size());
+    const std::optional<std::vector<std::uint32_t>> originals = take_apart(apart, sources, {.distance = kDistance});
+    ASSERT_TRUE(originals);
+    ASSERT_EQ(originals->size(), apart.vertices.size());
+    for (std::size_t v = 0; v < apart.vertices.size(); ++v) {
+      const std::uint32_t original = (*originals)[v];
+      ASSERT_EQ((*originals)[original], original);
+      EXPECT_LE(norm(apart.vertices[v] - apart.vertices[original]), 3 * kDistance);
+      EXPECT_TRUE(v >= mesh.vertices.size() || original == v);
+    }
+  }
 }
 
 TEST(TakeApart, RefusesWhatHasNoSides) {

@@ -10,6 +10,7 @@
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
 #include "io/files/ascii.h"
+#include "io/files/enumerated.h"
 
 namespace raycone {
 namespace {
@@ -81,7 +82,7 @@ OperandSpec meshes_operand() {
 
 OptionGroup mesh_group() {
   return {"Mesh",
-          {{"--mesh-format", "obj|ply|stl|off|gltf|glb|3mf",
+          {{"--mesh-format", joined(mesh_format_names(), "|"),
             "Format of a mesh whose name and content do not tell it, as in pipes"},
            {"--weld", "exact|none|D", "Merge vertices at equal positions, or within D (default: exact)"},
            {"--orient", "keep|flip|auto", "Turn no face, all, or those that make the mesh agree and face outward"},
@@ -98,8 +99,9 @@ MeshOptions parse_mesh(const Values& values) {
   mesh.further.assign(paths.begin() + 1, paths.end());
   if (values.given("--mesh-format")) {
     mesh.reading.format = mesh_format_from_name(values.text("--mesh-format"));
-    if (!mesh.reading.format)
-      invalid("--mesh-format", values.text("--mesh-format"), "obj, ply, stl, off, gltf, glb or 3mf");
+    if (!mesh.reading.format) {
+      invalid("--mesh-format", values.text("--mesh-format"), enumerated(mesh_format_names(), " or "));
+    }
   }
   if (values.given("--scale")) mesh.reading.scale = values.positive("--scale");
   mesh.reading.y_up_to_z_up = values.given("--up");

@@ -14,10 +14,4 @@ std::string quoted(const std::string& text) {
   return result + '\'';
 }
 
-std::string joined(const std::vector<std::string>& words, const std::string& separator) {
-  std::string result;
-  for (const std::string& word : words) result += (result.empty() ? "" : separator) + word;
-  return result;
-}
-
 }  // namespace raycone

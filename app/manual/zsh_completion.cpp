@@ -5,6 +5,7 @@
 #include "app/command_line/value_candidates.h"
 #include "app/manual/completion.h"
 #include "app/manual/shell_words.h"
+#include "io/files/enumerated.h"
 
 namespace raycone {
 namespace {

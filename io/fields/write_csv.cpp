@@ -35,7 +35,7 @@ char* print(char* at, Number value) {
 
 // "first,second," or "first,": the part of a row that many rows share.
 template <typename... Numbers>
-std::string joined(Numbers... numbers) {
+std::string cells(Numbers... numbers) {
   std::array<char, sizeof...(Numbers) * (kMaxNumber + 1)> text;
   char* end = text.data();
   const auto append = [&end](auto number) {
@@ -132,8 +132,8 @@ class CsvLatticeWriter final : public LatticeWriter {
     // The texts of one axis are the same in every row; printing them once makes rows three times as fast.
     for (std::int64_t n = 0; n < lattice.grid.counts[0]; ++n) {
       const std::int64_t i = lattice.grid.index_min[0] + n;
-      i_texts_.push_back(joined(i));
-      if (!turned_) x_texts_.push_back(joined(lattice.grid.coordinate(0, i)));
+      i_texts_.push_back(cells(i));
+      if (!turned_) x_texts_.push_back(cells(lattice.grid.coordinate(0, i)));
     }
   }
 
@@ -157,8 +157,8 @@ class CsvLatticeWriter final : public LatticeWriter {
       const auto line = static_cast<std::int64_t>(begin / length);
       const std::int64_t j = block.first[1] + line % block.counts[1];
       const std::int64_t k = block.first[2] + line / block.counts[1];
-      const std::string jk = joined(j, k);
-      const std::string yz = turned_ ? "" : joined(lattice_.grid.coordinate(1, j), lattice_.grid.coordinate(2, k));
+      const std::string jk = cells(j, k);
+      const std::string yz = turned_ ? "" : cells(lattice_.grid.coordinate(1, j), lattice_.grid.coordinate(2, k));
       std::size_t i = begin % length;
       for (const std::size_t line_end = std::min(end, begin - i + length); begin < line_end; ++begin, ++i) {
         at = print(print(at, i_texts_[i]), jk);

@@ -1,4 +1,4 @@
-// Lists in messages.
+// Lists in texts.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +14,13 @@ namespace raycone {
     if (n > 0) text += n + 1 == words.size() ? last : ", ";
     text += words[n];
   }
+  return text;
+}
+
+// "a|b|c".
+[[nodiscard]] inline std::string joined(const std::vector<std::string>& words, const std::string& separator) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : separator) + word;
   return text;
 }
 

@@ -100,10 +100,16 @@ MeshFile parse_mesh(const std::string& path, std::string_view bytes, std::string
 
 }  // namespace
 
+std::vector<std::string> mesh_format_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, format] : kFormatNames) names.emplace_back(name);
+  return names;
+}
+
 std::optional<MeshFormat> mesh_format_from_name(std::string_view name) {
-  const std::string lower = lower_case(name);
-  for (const auto& [known, format] : kFormatNames)
-    if (lower == known) return format;
+  for (const auto& [known, format] : kFormatNames) {
+    if (is_word(name, known)) return format;
+  }
   return std::nullopt;
 }
 

@@ -17,7 +17,9 @@ namespace raycone {
 
 enum class MeshFormat { kObj, kPly, kStl, kOff, kGltf, kGlb, k3mf };
 
-// "obj", "ply", "stl", "off", "gltf", "glb" or "3mf", in any case; nothing else.
+// "obj", "ply", "stl", "off", "gltf", "glb", "3mf".
+[[nodiscard]] std::vector<std::string> mesh_format_names();
+// In any case.
 [[nodiscard]] std::optional<MeshFormat> mesh_format_from_name(std::string_view name);
 
 struct ReadMeshOptions {

@@ -15,6 +15,7 @@
 #include "app/command_line/sample_options.h"
 #include "app/process/usage_error.h"
 #include "io/files/ascii.h"
+#include "io/files/enumerated.h"
 
 namespace raycone {
 namespace {
@@ -91,7 +92,9 @@ std::string parse_batch_format(const Values& values) {
   std::string format =
       lower_case(values.given("--format") ? values.text("--format") : default_format(values.given("--sample")));
   if (format != "none" && !field_format_from_name(format)) {
-    invalid("--format", values.text("--format"), "vdb, csv, npy, npz, vti, nrrd, nii, nii.gz or none");
+    std::vector<std::string> expected = names_of(formats_that_hold(FormatTraits::kLattices));
+    expected.emplace_back("none");
+    invalid("--format", values.text("--format"), enumerated(expected, " or "));
   }
   return format;
 }

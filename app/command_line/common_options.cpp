@@ -60,9 +60,10 @@ FieldFormat parse_format(const Values& values, const std::string& output, const 
     throw UsageError(output + ": its extension names a format, but --raw writes bare numbers");
   if (formats.only) return *formats.only;
   if (format && std::ranges::count(formats.written, *format) > 0) return *format;
-  if (named) invalid("--format", values.text("--format"), formats.listed);
+  const std::string listed = enumerated(names_of(formats.written), " or ");
+  if (named) invalid("--format", values.text("--format"), listed);
   const std::string wrong = format ? name + " does not hold " + formats.contents : "its extension names no format";
-  throw UsageError(output + ": " + wrong + ", expected " + formats.listed + ", or --format");
+  throw UsageError(output + ": " + wrong + ", expected " + listed + ", or --format");
 }
 
 }  // namespace

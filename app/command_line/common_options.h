@@ -27,8 +27,7 @@ namespace raycone {
 
 // The formats that a command writes.
 struct OutputFormats {
-  std::vector<FieldFormat> written;
-  std::string listed;                    // for messages
+  std::vector<FieldFormat> written;      // listed so in messages
   std::optional<FieldFormat> only = {};  // of --raw; the output's name may not promise another one
   std::string contents = "lattices";     // what other formats do not hold
 };

@@ -53,7 +53,7 @@ void refuse_idle_depfile(const Values& values, const OutputFiles& output) {
 // `stores_numbers`: besides those of fields, as points are.
 void refuse_idle_encoding(const Values& values, const FieldOptions& field, const FieldEncoding& encoding,
                           bool stores_numbers) {
-  if (encoding.format == FieldFormat::kCsv) refuse_option(values, "--dtype", kOnCsv);
+  if (is_text(encoding.format)) refuse_option(values, "--dtype", kOnCsv);
   if (!field.has_numbers() && !stores_numbers) refuse_option(values, "--dtype", kNoDigits);
   if (encoding.format != FieldFormat::kNpz) refuse_flag(values, "--pack-bits", "on this format, expected npz");
   if (!field.has(Field::kInside)) refuse_flag(values, "--pack-bits", "without --field inside");
@@ -67,7 +67,7 @@ void refuse_idle_options(const Values& values, const LatticeCommand& command) {
   if (!command.field.has_distance()) {
     refuse_option(values, "--band", "without a distance, expected --field sdf or solid");
   }
-  if (command.encoding.format == FieldFormat::kCsv) refuse_flag(values, "--double", kOnCsv);
+  if (is_text(command.encoding.format)) refuse_flag(values, "--double", kOnCsv);
   for (const char* const name : {"--double", "--half"}) {
     if (!command.field.has_numbers()) refuse_flag(values, name, kNoDigits);
   }

@@ -1,7 +1,6 @@
 #include "app/command_line/lattice_options.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -15,6 +14,7 @@
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
 #include "io/files/ascii.h"
+#include "io/files/enumerated.h"
 
 namespace raycone {
 namespace {
@@ -45,25 +45,23 @@ GridReference parse_like(const std::string& text) {
 
 // An array or image of a lattice has one axis per axis of the lattice.
 void check_one_field(const LatticeCommand& command) {
-  constexpr std::array kOfOneField{FieldFormat::kNpy, FieldFormat::kNrrd, FieldFormat::kNifti, FieldFormat::kNiftiGz};
-  const FieldFormat format = command.encoding.format;
-  if (std::ranges::count(kOfOneField, format) == 0) return;
-  const std::string name(name_of(format));
-  const std::string reason = name + " holds one number per sample, expected vdb, csv, npz or vti";
-  if (command.field.diagnostics) throw UsageError("--diagnostics: " + reason);
-  if (command.field.fields.size() > 1) throw UsageError("several fields: " + reason);
-  if (command.field.has(Field::kGradient) && format != FieldFormat::kNpy) {
-    throw UsageError("--field gradient: " + name + " holds one number per sample, expected vdb, csv, npy, npz or vti");
-  }
+  const FormatTraits& format = traits_of(command.encoding.format);
+  const auto refuse = [&](const std::string& what, FormatTraits::Content content) {
+    if (format.holds(content)) return;
+    throw UsageError(what + ": " + std::string(format.name) + " holds one number per sample, expected " +
+                     enumerated(names_of(formats_that_hold(content)), " or "));
+  };
+  if (command.field.diagnostics) refuse("--diagnostics", FormatTraits::kSeveralFields);
+  if (command.field.fields.size() > 1) refuse("several fields", FormatTraits::kSeveralFields);
+  if (command.field.has(Field::kGradient)) refuse("--field gradient", FormatTraits::kVectors);
 }
 
+// On text no --dtype has an effect, which is said elsewhere.
 void check_halves(const FieldEncoding& encoding) {
-  if (encoding.precision != Precision::kHalf) return;
-  for (const FieldFormat without :
-       {FieldFormat::kVti, FieldFormat::kNrrd, FieldFormat::kNifti, FieldFormat::kNiftiGz}) {
-    if (encoding.format != without) continue;
-    throw UsageError("--dtype f16: this format has no numbers of 16 bits, expected f32, f64 or vdb, npy, npz");
-  }
+  if (encoding.precision != Precision::kHalf || is_text(encoding.format)) return;
+  if (traits_of(encoding.format).holds(FormatTraits::kHalves)) return;
+  throw UsageError("--dtype f16: this format has no numbers of 16 bits, expected f32, f64 or " +
+                   joined(names_of(formats_that_hold(FormatTraits::kHalves)), ", "));
 }
 
 // NRRD alone leaves the choice.
@@ -157,7 +155,7 @@ std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& 
 }
 
 CommandSpec lattice_spec() {
-  OptionGroup output = output_group("vdb|csv|npy|npz|vti|nrrd|nii|nii.gz");
+  OptionGroup output = output_group(joined(names_of(formats_that_hold(FormatTraits::kLattices)), "|"));
   output.options.push_back(
       {"--dtype", "f16|f32|f64", "Type of values in all formats but CSV; f16 in VDB, NPY, NPZ (default: f32)"});
   output.options.push_back({"--double", "", "The same as --dtype f64"});
@@ -186,11 +184,7 @@ Command parse_lattice(const Values& values) {
   command.lattice = parse_lattice_request(values);
   if (command.field.has_distance()) make_room_for_band(values, command);
   command.output = parse_output_files(values);
-  command.encoding =
-      parse_encoding(values, command.output,
-                     {.written = {FieldFormat::kVdb, FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kNpz,
-                                  FieldFormat::kVti, FieldFormat::kNrrd, FieldFormat::kNifti, FieldFormat::kNiftiGz},
-                      .listed = "vdb, csv, npy, npz, vti, nrrd, nii or nii.gz"});
+  command.encoding = parse_encoding(values, command.output, {.written = formats_that_hold(FormatTraits::kLattices)});
   if (values.given("--double")) command.encoding.precision = Precision::kDouble;
   parse_grid_options(values, command);
   check_one_field(command);

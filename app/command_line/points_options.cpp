@@ -13,6 +13,7 @@
 #include "app/command_line/sample_options.h"
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
+#include "io/files/enumerated.h"
 #include "io/files/file_identity.h"
 
 namespace raycone {
@@ -40,11 +41,8 @@ std::optional<RawPrecision> parse_raw(const Values& values) {
 }
 
 OutputFormats output_formats(const PointsCommand& command) {
-  if (command.sample)
-    return {.written = {FieldFormat::kNpz, FieldFormat::kCsv}, .listed = "npz or csv", .contents = "drawn points"};
-  OutputFormats formats{.written = {FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kNpz},
-                        .listed = "csv, npy or npz",
-                        .contents = "points"};
+  if (command.sample) return {.written = {FieldFormat::kNpz, FieldFormat::kCsv}, .contents = "drawn points"};
+  OutputFormats formats{.written = formats_that_hold(FormatTraits::kPoints), .contents = "points"};
   if (command.reading.raw) {
     const bool single = *command.reading.raw == RawPrecision::kFloat;
     formats.only = single ? FieldFormat::kRawFloat : FieldFormat::kRawDouble;
@@ -95,7 +93,7 @@ void parse_points_source(const Values& values, PointsCommand& command) {
 }  // namespace
 
 CommandSpec points_spec() {
-  OptionGroup output = output_group("csv|npy|npz");
+  OptionGroup output = output_group(joined(names_of(formats_that_hold(FormatTraits::kPoints)), "|"));
   output.options.push_back({"--dtype", "f16|f32|f64", "Type of values in NPY and NPZ (default: f64)"});
   output.options.push_back(pack_bits_option());
   const OptionGroup unlisted{"", {{"--band", "B", ""}}};  // to be told why it is not there

@@ -42,13 +42,13 @@ std::vector<std::string> inputs_of(const MeshOptions& mesh,
 }  // namespace
 
 std::vector<WrittenFile> files_written(const LatticeCommand& command) {
-  std::vector<WrittenFile> written = files_written(command.output, command.encoding.format == FieldFormat::kCsv);
+  std::vector<WrittenFile> written = files_written(command.output, is_text(command.encoding.format));
   if (const std::optional<std::string> names = label_names_path(command)) written.push_back({*names, "label names"});
   return written;
 }
 
 std::vector<WrittenFile> files_written(const PointsCommand& command) {
-  return files_written(command.output, command.encoding.format == FieldFormat::kCsv);
+  return files_written(command.output, is_text(command.encoding.format));
 }
 
 std::vector<WrittenFile> files_written(const SliceCommand& command) {

@@ -51,18 +51,16 @@ double bytes_of_row(std::size_t numbers) { return 2.0 * static_cast<double>(numb
 double bytes_of_sample(FieldFormat format, const OutputDescription& description) {
   constexpr std::size_t kIndicesAndPosition = 6;
   if (description.compress) return 0.0;  // zeros take next to nothing
-  switch (format) {
-    case FieldFormat::kNpy:
-    case FieldFormat::kNpz:
-    case FieldFormat::kNrrd:
-    case FieldFormat::kNifti:
-    case FieldFormat::kVti:
+  switch (traits_of(format).storage) {
+    case NumberStorage::kArrays:
       return bytes_of_values(description, bytes_of_real(description, Precision::kSingle));
-    case FieldFormat::kCsv:
+    case NumberStorage::kText:
       return bytes_of_row(kIndicesAndPosition + description.components());
-    default:
-      return 0.0;
+    case NumberStorage::kGrids:
+    case NumberStorage::kNothing:
+      break;
   }
+  return 0.0;
 }
 
 double bytes_of_point(FieldFormat format, const OutputDescription& description) {

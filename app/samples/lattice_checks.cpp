@@ -25,7 +25,7 @@ void check_cubic(const char* field, const PlacedLattice& lattice, const std::str
 
 // The largest number that `format` holds.
 double largest_stored(FieldFormat format, const OutputDescription& description) {
-  const bool any = format == FieldFormat::kCsv || format == FieldFormat::kNone;
+  const bool any = is_text(format) || format == FieldFormat::kNone;
   if (any || description.is(Precision::kDouble)) return std::numeric_limits<double>::infinity();
   return description.is(Precision::kHalf) ? kLargestHalf : std::numeric_limits<float>::max();
 }

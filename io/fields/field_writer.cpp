@@ -1,25 +1,11 @@
 #include "io/fields/field_writer.h"
 
-#include <algorithm>
-#include <array>
 #include <stdexcept>
 
 #include "io/fields/format_writers.h"
-#include "io/files/ascii.h"
 
 namespace raycone {
 namespace {
-
-struct NamedFormat {
-  std::string_view name;
-  FieldFormat format;
-};
-
-constexpr std::array kFormatNames{NamedFormat{"vdb", FieldFormat::kVdb},   NamedFormat{"csv", FieldFormat::kCsv},
-                                  NamedFormat{"npy", FieldFormat::kNpy},   NamedFormat{"npz", FieldFormat::kNpz},
-                                  NamedFormat{"vti", FieldFormat::kVti},   NamedFormat{"nrrd", FieldFormat::kNrrd},
-                                  NamedFormat{"nii", FieldFormat::kNifti}, NamedFormat{"nii.gz", FieldFormat::kNiftiGz},
-                                  NamedFormat{"none", FieldFormat::kNone}};
 
 class NoLatticeWriter : public LatticeWriter {
  public:
@@ -40,17 +26,6 @@ class NoPointWriter : public PointWriter {
 
 void LatticeWriter::write_blocks(const SignedBlocks& /*blocks*/) {
   throw std::logic_error("LatticeWriter: takes no blocks");
-}
-
-std::optional<FieldFormat> field_format_from_name(std::string_view name) {
-  const auto* const found =
-      std::ranges::find_if(kFormatNames, [&](const NamedFormat& known) { return is_word(name, known.name); });
-  return found == kFormatNames.end() ? std::nullopt : std::optional(found->format);
-}
-
-std::string_view name_of(FieldFormat format) {
-  const auto* const found = std::ranges::find(kFormatNames, format, &NamedFormat::format);
-  return found == kFormatNames.end() ? std::string_view() : found->name;
 }
 
 std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFile& output, const PlacedLattice& lattice,

@@ -7,7 +7,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -15,29 +14,10 @@
 #include "core/data/lattice.h"
 #include "core/data/placed_lattice.h"
 #include "core/data/vec3.h"
+#include "io/fields/field_format.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
-
-// kNone: nothing is written, for measurements.
-enum class FieldFormat {
-  kVdb,
-  kCsv,
-  kNpy,
-  kVti,
-  kNpz,
-  kNrrd,
-  kNifti,
-  kNiftiGz,    // NIfTI-1, packed by gzip
-  kRawDouble,  // nothing but numbers, little-endian; has no name
-  kRawFloat,
-  kNone,
-};
-
-// "vdb", "csv", "npy", "vti", "npz", "nrrd", "nii", "nii.gz" or "none", in any case.
-[[nodiscard]] std::optional<FieldFormat> field_format_from_name(std::string_view name);
-// In small letters; empty for what has none.
-[[nodiscard]] std::string_view name_of(FieldFormat format);
 
 // What the numbers of a field are; formats choose how they store them.
 enum class FieldKind {

@@ -115,22 +115,22 @@ const std::vector<FieldKind> kAllKinds{FieldKind::kReal,  FieldKind::kDensity, F
                                        FieldKind::kBound, FieldKind::kCount,   FieldKind::kFlag,     FieldKind::kLabel};
 
 TEST_F(DiskSpace, IsWhatLatticesTake) {
-  for (const FieldFormat format : {FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kNpz, FieldFormat::kVti,
-                                   FieldFormat::kNrrd, FieldFormat::kNifti}) {
-    const bool is_image = format == FieldFormat::kNrrd || format == FieldFormat::kNifti;
+  for (const FieldFormat format : formats_that_hold(FormatTraits::kLattices)) {
+    const FormatTraits& traits = traits_of(format);
+    if (traits.storage == NumberStorage::kGrids) continue;  // where all is zero, they hold nothing
     for (const std::optional<Precision> precision : kAllPrecisions) {
-      const bool has_halves = format == FieldFormat::kNpy || format == FieldFormat::kNpz;
-      if (precision == Precision::kHalf && !has_halves) continue;
+      if (precision == Precision::kHalf && !traits.holds(FormatTraits::kHalves)) continue;
       for (const FieldKind kind : kAllKinds) {
-        if (is_image && kind == FieldKind::kVector) continue;
+        if (kind == FieldKind::kVector && !traits.holds(FormatTraits::kVectors)) continue;
         OutputDescription description = described({kind}, precision);
         description.packs_flags = format == FieldFormat::kNpz;  // others are never asked to
         expect_enough_of_lattice(
             format, description,
             std::to_string(static_cast<int>(format)) + " " + std::to_string(static_cast<int>(kind)));
       }
-      const bool has_several = format != FieldFormat::kNpy && !is_image;
-      if (has_several) expect_enough_of_lattice(format, described(kAllKinds, precision), "all kinds");
+      if (traits.holds(FormatTraits::kSeveralFields)) {
+        expect_enough_of_lattice(format, described(kAllKinds, precision), "all kinds");
+      }
     }
   }
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdio>
+#include <variant>
 
 #include "app/text/parse_value.h"
 
@@ -12,67 +13,100 @@ namespace {
 
 constexpr std::array kStatusNames{"ok", "invalid", "timeout", "memory", "crashed", "unwritable"};
 
-// The columns between `exit` and `output`.
-constexpr std::size_t kFirstFigure = 3;
-constexpr std::size_t kFigures = 10;
-constexpr std::size_t kFormerColumns = 16;
-// The columns at the end.
-constexpr std::size_t kFirstOrientationFigure = 17;
-constexpr std::size_t kOrientationFigures = 3;
+struct ResultColumn {
+  const char* name;
+  std::variant<std::string ResultRow::*, MeshStatus ResultRow::*, int ResultRow::*, std::uint64_t MeshFigures::*,
+               double MeshFigures::*>
+      member;
+};
 
-std::string seconds_text(double seconds) {
+constexpr std::array kResultColumns{
+    ResultColumn{"mesh", &ResultRow::mesh},
+    ResultColumn{"status", &ResultRow::status},
+    ResultColumn{"exit", &ResultRow::exit},
+    ResultColumn{"faces", &MeshFigures::faces},
+    ResultColumn{"exterior_edges", &MeshFigures::exterior_edges},
+    ResultColumn{"samples", &MeshFigures::samples},
+    ResultColumn{"degenerate", &MeshFigures::degenerate},
+    ResultColumn{"on_surface", &MeshFigures::on_surface},
+    ResultColumn{"read_s", &MeshFigures::read_s},
+    ResultColumn{"prepare_s", &MeshFigures::prepare_s},
+    ResultColumn{"evaluate_s", &MeshFigures::evaluate_s},
+    ResultColumn{"write_s", &MeshFigures::write_s},
+    ResultColumn{"peak_memory_bytes", &MeshFigures::peak_memory_bytes},
+    ResultColumn{"output", &ResultRow::output},
+    ResultColumn{"sha256", &ResultRow::sha256},
+    ResultColumn{"message", &ResultRow::message},
+    ResultColumn{"warnings", &ResultRow::warnings},
+    ResultColumn{"flipped_faces", &MeshFigures::flipped_faces},
+    ResultColumn{"dropped_duplicates", &MeshFigures::dropped_duplicates},
+    ResultColumn{"patches", &MeshFigures::patches},
+};
+constexpr std::size_t kFormerColumns = 16;  // up to "message"
+
+// ---- From values to text ----
+
+std::string to_field(const std::string& text) { return text; }
+std::string to_field(MeshStatus status) { return name_of(status); }
+std::string to_field(int number) { return std::to_string(number); }
+std::string to_field(std::uint64_t count) { return std::to_string(count); }
+std::string to_field(double seconds) {
   char text[48];
   std::snprintf(text, sizeof text, "%.9f", seconds);
   return text;
 }
 
-CsvRecord to_fields(const MeshFigures& f) {
-  return {std::to_string(f.faces),      std::to_string(f.exterior_edges),
-          std::to_string(f.samples),    std::to_string(f.degenerate),
-          std::to_string(f.on_surface), seconds_text(f.read_s),
-          seconds_text(f.prepare_s),    seconds_text(f.evaluate_s),
-          seconds_text(f.write_s),      std::to_string(f.peak_memory_bytes)};
+template <typename Value>
+std::string field_of(const ResultRow& row, Value ResultRow::*member) {
+  return to_field(row.*member);
 }
 
-CsvRecord orientation_fields(const MeshFigures& f) {
-  return {std::to_string(f.flipped_faces), std::to_string(f.dropped_duplicates), std::to_string(f.patches)};
+template <typename Value>
+std::string field_of(const ResultRow& row, Value MeshFigures::*member) {
+  return row.figures ? to_field((*row.figures).*member) : "";
 }
 
-// Reads the fields of a record one after the other; `valid` is false once one of them is no number.
-class FigureReader {
- public:
-  FigureReader(const CsvRecord& record, std::size_t first) : record_(record), next_(first) {}
+// ---- Back: false where the text is no such value ----
 
-  std::uint64_t count() {
-    const std::optional<std::int64_t> number = integer_from(record_[next_++]);
-    valid_ = valid_ && number && *number >= 0;
-    return static_cast<std::uint64_t>(number.value_or(0));
-  }
-  double number() {
-    const std::optional<double> value = number_from(record_[next_++]);
-    valid_ = valid_ && value;
-    return value.value_or(0.0);
-  }
-  [[nodiscard]] bool valid() const { return valid_; }
+bool from_field(const std::string& text, std::string& value) {
+  value = text;
+  return true;
+}
 
- private:
-  const CsvRecord& record_;
-  std::size_t next_;
-  bool valid_ = true;
-};
+bool from_field(const std::string& text, MeshStatus& status) {
+  const auto found = std::ranges::find(kStatusNames, text);
+  status = static_cast<MeshStatus>(found - kStatusNames.begin());
+  return found != kStatusNames.end();
+}
 
-std::optional<MeshFigures> figures_from(const CsvRecord& record) {
-  FigureReader fields(record, kFirstFigure);
-  MeshFigures f;
-  for (std::uint64_t* const count : {&f.faces, &f.exterior_edges, &f.samples, &f.degenerate, &f.on_surface}) {
-    *count = fields.count();
-  }
-  for (double* const seconds : {&f.read_s, &f.prepare_s, &f.evaluate_s, &f.write_s}) *seconds = fields.number();
-  f.peak_memory_bytes = fields.count();
-  FigureReader last(record, kFirstOrientationFigure);
-  for (std::uint64_t* const count : {&f.flipped_faces, &f.dropped_duplicates, &f.patches}) *count = last.count();
-  if (!fields.valid() || !last.valid()) return std::nullopt;
-  return f;
+bool from_field(const std::string& text, int& number) {
+  const std::optional<std::int64_t> value = integer_from(text);
+  number = static_cast<int>(value.value_or(0));
+  return value.has_value();
+}
+
+bool from_field(const std::string& text, std::uint64_t& count) {
+  const std::optional<std::int64_t> value = integer_from(text);
+  count = static_cast<std::uint64_t>(value.value_or(0));
+  return value && *value >= 0;
+}
+
+bool from_field(const std::string& text, double& number) {
+  const std::optional<double> value = number_from(text);
+  number = value.value_or(0.0);
+  return value.has_value();
+}
+
+template <typename Value>
+bool set_field(ResultRow& row, Value ResultRow::*member, const std::string& text) {
+  return from_field(text, row.*member);
+}
+
+// Figures are there only where all of them are.
+template <typename Value>
+bool set_field(ResultRow& row, Value MeshFigures::*member, const std::string& text) {
+  if (row.figures && !from_field(text, (*row.figures).*member)) row.figures.reset();
+  return true;
 }
 
 }  // namespace
@@ -80,58 +114,34 @@ std::optional<MeshFigures> figures_from(const CsvRecord& record) {
 std::string name_of(MeshStatus status) { return kStatusNames[static_cast<std::size_t>(status)]; }
 
 const CsvRecord& result_columns() {
-  static const CsvRecord columns{"mesh",
-                                 "status",
-                                 "exit",
-                                 "faces",
-                                 "exterior_edges",
-                                 "samples",
-                                 "degenerate",
-                                 "on_surface",
-                                 "read_s",
-                                 "prepare_s",
-                                 "evaluate_s",
-                                 "write_s",
-                                 "peak_memory_bytes",
-                                 "output",
-                                 "sha256",
-                                 "message",
-                                 "warnings",
-                                 "flipped_faces",
-                                 "dropped_duplicates",
-                                 "patches"};
+  static const CsvRecord columns = [] {
+    CsvRecord names;
+    for (const ResultColumn& column : kResultColumns) names.emplace_back(column.name);
+    return names;
+  }();
   return columns;
 }
 
 CsvRecord former_result_columns() { return {result_columns().begin(), result_columns().begin() + kFormerColumns}; }
 
 CsvRecord to_record(const ResultRow& row) {
-  CsvRecord record{row.mesh, name_of(row.status), std::to_string(row.exit)};
-  const CsvRecord figures = row.figures ? to_fields(*row.figures) : CsvRecord(kFigures);
-  record.insert(record.end(), figures.begin(), figures.end());
-  record.insert(record.end(), {row.output, row.sha256, row.message, row.warnings});
-  const CsvRecord orientation = row.figures ? orientation_fields(*row.figures) : CsvRecord(kOrientationFigures);
-  record.insert(record.end(), orientation.begin(), orientation.end());
+  CsvRecord record;
+  for (const ResultColumn& column : kResultColumns) {
+    record.push_back(std::visit([&](auto member) { return field_of(row, member); }, column.member));
+  }
   return record;
 }
 
 std::optional<ResultRow> row_from(CsvRecord record) {
   // Of the version before: no warnings with names, and no face was turned.
   if (record.size() == kFormerColumns) record.insert(record.end(), {"", "0", "0", "0"});
-  if (record.size() != result_columns().size()) return std::nullopt;
-  const auto status = std::ranges::find(kStatusNames, record[1]);
-  const std::optional<std::int64_t> exit = integer_from(record[2]);
-  if (status == kStatusNames.end() || !exit) return std::nullopt;
+  if (record.size() != kResultColumns.size()) return std::nullopt;
   ResultRow row;
-  row.mesh = record[0];
-  row.status = static_cast<MeshStatus>(status - kStatusNames.begin());
-  row.exit = static_cast<int>(*exit);
-  row.figures = figures_from(record);
-  constexpr std::size_t kBehindFigures = kFirstFigure + kFigures;
-  row.output = record[kBehindFigures];
-  row.sha256 = record[kBehindFigures + 1];
-  row.message = record[kBehindFigures + 2];
-  row.warnings = record[kBehindFigures + 3];
+  row.figures.emplace();
+  for (std::size_t n = 0; n < record.size(); ++n) {
+    const auto set = [&](auto member) { return set_field(row, member, record[n]); };
+    if (!std::visit(set, kResultColumns[n].member)) return std::nullopt;
+  }
   if (row.status == MeshStatus::kOk && !row.figures) return std::nullopt;
   return row;
 }

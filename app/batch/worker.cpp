@@ -110,19 +110,19 @@ class Connection {
 
 MeshFigures figures_of(const RunReport& report) {
   const Seconds& seconds = report.seconds;
-  return {report.faces,
-          report.exterior_edges,
-          report.samples,
-          report.tally.degenerate,
-          report.tally.on_surface,
-          seconds.read,
-          seconds.prepare,
-          seconds.evaluate,
-          seconds.write,
-          report.peak_memory_bytes,
-          report.orientation.flipped_faces,
-          report.orientation.dropped_duplicates,
-          report.orientation.patches};
+  return {.faces = report.faces,
+          .exterior_edges = report.exterior_edges,
+          .samples = report.samples,
+          .degenerate = report.tally.degenerate,
+          .on_surface = report.tally.on_surface,
+          .read_s = seconds.read,
+          .prepare_s = seconds.prepare,
+          .evaluate_s = seconds.evaluate,
+          .write_s = seconds.write,
+          .peak_memory_bytes = report.peak_memory_bytes,
+          .flipped_faces = report.orientation.flipped_faces,
+          .dropped_duplicates = report.orientation.dropped_duplicates,
+          .patches = report.orientation.patches};
 }
 
 // Where a buffer of the mesh lies, wherever both are.

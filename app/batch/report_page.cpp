@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <ctime>
 #include <filesystem>
 #include <functional>
@@ -25,6 +24,7 @@
 #include "app/process/version.h"
 #include "app/text/html.h"
 #include "app/text/readable_count.h"
+#include "io/files/ascii.h"
 #include "io/files/counted.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"
@@ -270,9 +270,7 @@ std::string plots(const BatchRecords& records) {
 // --- Tables
 
 std::string number_cell(double value, const std::string& text) {
-  char exact[48];
-  std::snprintf(exact, sizeof exact, "%.9g", value);
-  return std::string("<td class=\"n\" data-v=\"") + exact + "\">" + html_text(text) + "</td>";
+  return "<td class=\"n\" data-v=\"" + with_digits(value, 9) + "\">" + html_text(text) + "</td>";
 }
 
 std::string count_cell(std::uint64_t count) {

@@ -1,7 +1,6 @@
 #include "app/fields/make_surface.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -13,6 +12,7 @@
 #include "core/surface/mesh_as_surface.h"
 #include "core/surface/surface_measures.h"
 #include "core/surface/thicken.h"
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -78,9 +78,8 @@ std::vector<Warning> warnings_about(const FinishedSurface& closed, const Surface
 // What is dropped, though it is a part of the solid.
 std::optional<Warning> warning_about(const ThinParts& thin) {
   if (!(thin.of_all > 0.0)) return std::nullopt;
-  char percent[32];
-  std::snprintf(percent, sizeof percent, "%.3g", 100.0 * thin.of_all);
-  std::string text = std::string(percent) + " % of the mesh's area is of parts too thin for the lattice, and left out";
+  std::string text =
+      with_digits(100.0 * thin.of_all, 3) + " % of the mesh's area is of parts too thin for the lattice, and left out";
   if (thin.lost > 0) text += ", " + std::to_string(thin.lost) + (thin.lost == 1 ? " part" : " parts") + " as a whole";
   return Warning{"thin-parts", text + "; see --resolution, and --thicken of half a voxel's diagonal or more"};
 }

@@ -6,6 +6,7 @@
 
 #include "app/options/field_options.h"
 #include "core/evaluation/winding_number.h"
+#include "io/files/ascii.h"
 
 namespace raycone {
 namespace {
@@ -72,10 +73,8 @@ std::vector<Warning> warnings_about(const OrientationCounts& counts) {
 }
 
 Warning weld_collapsed(std::uint64_t faces, double distance) {
-  char help[96];
-  std::snprintf(help, sizeof help, " removed by --weld %g, which made corners one; a smaller distance keeps %s",
-                distance, faces == 1 ? "it" : "them");
-  return {"weld-collapsed", counted_as(faces, "face", "faces") + help};
+  return {"weld-collapsed", counted_as(faces, "face", "faces") + " removed by --weld " + with_digits(distance, 6) +
+                                ", which made corners one; a smaller distance keeps " + (faces == 1 ? "it" : "them")};
 }
 
 bool should_have_inside(const Box& box, const PlacedLattice& lattice) {

@@ -6,6 +6,7 @@
 
 #include "app/process/usage_error.h"
 #include "app/text/plain_text.h"
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/readable_bytes.h"
 
@@ -16,9 +17,8 @@ std::string message_line(std::string_view message) { return "raycone: " + plain_
 void print_message(std::string_view message) { std::fputs(message_line(message).c_str(), stderr); }
 
 std::string timeout_text(const std::string& name, double seconds) {
-  char limit[32];
-  std::snprintf(limit, sizeof limit, "%g", seconds);
-  return name + ": not finished within " + limit + (seconds == 1.0 ? " second" : " seconds") + " (--timeout)";
+  const std::string limit = with_digits(seconds, 6) + (seconds == 1.0 ? " second" : " seconds");
+  return name + ": not finished within " + limit + " (--timeout)";
 }
 
 std::string out_of_memory_text(const std::string& name, std::uint64_t limit) {

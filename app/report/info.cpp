@@ -7,6 +7,7 @@
 
 #include "app/text/plain_text.h"
 #include "app/text/readable_count.h"
+#include "io/files/ascii.h"
 #include "io/files/counted.h"
 
 namespace raycone {
@@ -46,14 +47,8 @@ void InfoTable::row(const std::string& name, const std::string& value) {
   text_ += "  " + name + std::string(name.size() < kWidth ? kWidth - name.size() : 0, ' ') + ' ' + value + "\n";
 }
 
-std::string printed_number(double number) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", number);
-  return text;
-}
-
 std::string printed_point(const Vec3& point) {
-  return "(" + printed_number(point.x) + ", " + printed_number(point.y) + ", " + printed_number(point.z) + ")";
+  return "(" + with_digits(point.x, 9) + ", " + with_digits(point.y, 9) + ", " + with_digits(point.z, 9) + ")";
 }
 
 std::string info_text(const MeshInfo& info, const CostedLattices& costed, int threads) {
@@ -74,8 +69,8 @@ std::string info_text(const MeshInfo& info, const CostedLattices& costed, int th
   if (info.intersections) table.row("self-intersections", intersections_of(*info.intersections));
   table.row("bounds", printed_point(info.bounds.lower) + " to " + printed_point(info.bounds.upper));
   table.row("size", printed_point(info.bounds.upper - info.bounds.lower) + " world units");
-  table.row("area", printed_number(s.surface_area) + " square world units");
-  table.row("signed volume", s.signed_volume ? printed_number(*s.signed_volume) + " cubic world units" : "none, open");
+  table.row("area", with_digits(s.surface_area, 9) + " square world units");
+  table.row("signed volume", s.signed_volume ? with_digits(*s.signed_volume, 9) + " cubic world units" : "none, open");
   std::string names;
   for (const Warning& warning : info.warnings) names += (names.empty() ? "" : ", ") + warning.name;
   table.row("warnings", names.empty() ? "none" : names);

@@ -55,7 +55,6 @@ class InfoTable {
 };
 
 // "0.1", "(0, 1, 0.5)": nine digits.
-[[nodiscard]] std::string printed_number(double number);
 [[nodiscard]] std::string printed_point(const Vec3& point);
 
 // Aligned text for people; the costs are those of `threads` threads.

@@ -10,6 +10,7 @@
 
 #include "app/report/info.h"
 #include "core/mesh/mesh_flaws.h"
+#include "io/files/ascii.h"
 #include "io/files/counted.h"
 #include "io/files/enumerated.h"
 
@@ -67,7 +68,7 @@ class Judgement {
   std::string outward() {
     if (!statistics_.closed()) return closed("outward");
     if (defects_.negative_volume) {
-      return "outward: the signed volume is negative, " + printed_number(statistics_.signed_volume.value_or(0.0));
+      return "outward: the signed volume is negative, " + with_digits(statistics_.signed_volume.value_or(0.0), 9);
     }
     if (defects_.reversed_components == 0) return "";
     return "outward: " + counted(defects_.reversed_components, "outermost component") + " of negative volume";

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "app/process/usage_error.h"
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 #include "io/files/half.h"
 
@@ -17,10 +17,11 @@ void check_cubic(const char* field, const PlacedLattice& lattice, const std::str
   const bool turned = !world_order(lattice).has_value();
   if (lattice.is_cubic(turned ? 1e-5 : 1e-12)) return;  // of matrices in 32 bits; of sides divided by counts
   const Vec3& spacing = lattice.grid.spacing;
-  char voxels[120];
-  std::snprintf(voxels, sizeof voxels, "voxels of %.9g x %.9g x %.9g%s", spacing.x, spacing.y, spacing.z,
-                lattice.is_orthogonal(1e-5) ? "" : " whose axes are not at right angles");
-  throw UsageError("--field " + std::string(field) + ": " + voxels + ", expected cubic ones (" + remedy + ')');
+  const std::string sides =
+      with_digits(spacing.x, 9) + " x " + with_digits(spacing.y, 9) + " x " + with_digits(spacing.z, 9);
+  const char* const axes = lattice.is_orthogonal(1e-5) ? "" : " whose axes are not at right angles";
+  throw UsageError("--field " + std::string(field) + ": voxels of " + sides + axes + ", expected cubic ones (" +
+                   remedy + ')');
 }
 
 // The largest number that `format` holds.
@@ -61,17 +62,15 @@ void check_digits(const std::string& output, const PlacedLattice& lattice, const
   const double largest = largest_stored(format, description), most = field.band * lattice.grid.spacing.x;
   const bool half = largest == kLargestHalf;
   const int bits = half ? 16 : 32;
-  char numbers[120];
   if (most > largest && (!half || cuts_off(field.band, lattice.grid))) {
-    std::snprintf(numbers, sizeof numbers, ": distances of up to %.6g are beyond %.6g, the range of %d bits", most,
-                  largest, bits);
-    throw OutputError(output + numbers + expected_instead_of(bits));
+    throw OutputError(output + ": distances of up to " + with_digits(most, 6) + " are beyond " +
+                      with_digits(largest, 6) + ", the range of " + std::to_string(bits) + " bits" +
+                      expected_instead_of(bits));
   }
   const double least = least_stored(format, description), voxel = lattice.grid.least_spacing();
   if (format == FieldFormat::kVdb || voxel >= least) return;  // VDB has its own limits (io/vdb/check_lattice.h)
-  std::snprintf(numbers, sizeof numbers, ": a voxel of %.2g is below %.2g, where distances of %d bits lose digits",
-                voxel, least, bits);
-  throw OutputError(output + numbers + expected_instead_of(bits));
+  throw OutputError(output + ": a voxel of " + with_digits(voxel, 2) + " is below " + with_digits(least, 2) +
+                    ", where distances of " + std::to_string(bits) + " bits lose digits" + expected_instead_of(bits));
 }
 
 }  // namespace raycone

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "app/process/usage_error.h"
-#include "app/text/six_digits.h"
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -25,8 +25,8 @@ void set_axis(Lattice& lattice, int axis, double origin, double spacing, std::in
 
 std::int64_t index_from(double value) {
   if (!(std::abs(value) <= kMaxIndex)) {
-    throw LimitError("the lattice would need the index " + six_digits(value) + ", expected at most " +
-                     six_digits(kMaxIndex) + "; voxels are too small so far from the origin, see --voxel-size");
+    throw LimitError("the lattice would need the index " + with_digits(value, 6) + ", expected at most " +
+                     with_digits(kMaxIndex, 6) + "; voxels are too small so far from the origin, see --voxel-size");
   }
   return static_cast<std::int64_t>(value);
 }
@@ -178,7 +178,7 @@ Box widened(Box box, const WorldPadding& padding) {
     box.lower[axis] -= width;
     box.upper[axis] += width;
     if (box.lower[axis] > box.upper[axis])
-      throw UsageError("--padding " + six_digits(padding.width) + (padding.percent ? "%" : "") +
+      throw UsageError("--padding " + with_digits(padding.width, 6) + (padding.percent ? "%" : "") +
                        ": leaves nothing of the box");
   }
   return box;
@@ -212,7 +212,7 @@ std::uint64_t sample_count(const Lattice& lattice) {
   const auto [x, y, z] = lattice.counts;
   const double samples = static_cast<double>(x) * static_cast<double>(y) * static_cast<double>(z);
   if (!(samples < 0x1p62))
-    throw LimitError("the lattice would have " + six_digits(samples) + " samples, expected less than 2^62");
+    throw LimitError("the lattice would have " + with_digits(samples, 6) + " samples, expected less than 2^62");
   for (std::size_t a = 0; a < 3; ++a) {
     if (lattice.counts[a] <= kMaxBlockSide) continue;
     throw LimitError("the lattice would have " + std::to_string(lattice.counts[a]) + " samples along " + "xyz"[a] +

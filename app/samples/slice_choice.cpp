@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
 #include <utility>
 
 #include "app/process/usage_error.h"
 #include "app/samples/lattice_choice.h"
-#include "app/text/six_digits.h"
 #include "io/files/ascii.h"
 #include "io/files/file_error.h"
 
@@ -100,14 +98,8 @@ PlaneView view_of(const Lattice& lattice, int axis) {
   return view;
 }
 
-std::string three_digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
-std::string listed(const Vec3& v, std::string (*digits)(double)) {
-  return digits(v.x) + ',' + digits(v.y) + ',' + digits(v.z);
+std::string listed(const Vec3& v, int digits) {
+  return with_digits(v.x, digits) + ',' + with_digits(v.y, digits) + ',' + with_digits(v.z, digits);
 }
 
 Slice choose(const AxisPlane& plane, const Box& box, const Box& padded, const SliceRequest& request) {
@@ -116,7 +108,7 @@ Slice choose(const AxisPlane& plane, const Box& box, const Box& padded, const Sl
   Slice slice;
   slice.lattice = lattice_across(plane.axis, at, padded, request);
   slice.view = view_of(*slice.lattice, plane.axis);
-  slice.plane = std::string(1, "xyz"[plane.axis]) + " = " + six_digits(at + 0.0);  // never -0
+  slice.plane = std::string(1, "xyz"[plane.axis]) + " = " + with_digits(at + 0.0, 6);  // never -0
   slice.short_plane = slice.plane;
   const auto [right, up] = kAxesInPlane[static_cast<std::size_t>(plane.axis)];
   slice.is_flat = padded.lower[right] == padded.upper[right] || padded.lower[up] == padded.upper[up];
@@ -205,8 +197,8 @@ Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const
   add_pixels(view.height, padding);
   const double margin = static_cast<double>(padding) * view.pixel;
   view.corner = near + (along_right(left) - margin) * view.right + (along_up(bottom) - margin) * view.up;
-  slice.plane = "normal " + listed(view.normal, six_digits) + " through " + listed(origin, six_digits);
-  slice.short_plane = "normal " + listed(view.normal, three_digits) + " at " + listed(origin, three_digits);
+  slice.plane = "normal " + listed(view.normal, 6) + " through " + listed(origin, 6);
+  slice.short_plane = "normal " + listed(view.normal, 3) + " at " + listed(origin, 3);
   return slice;
 }
 

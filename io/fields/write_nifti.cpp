@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <limits>
 #include <string>
@@ -14,6 +13,7 @@
 #include "io/fields/image_writer.h"
 #include "io/fields/nifti_fields.h"
 #include "io/fields/quaternion.h"
+#include "io/files/ascii.h"
 #include "io/files/file_error.h"
 
 namespace raycone {
@@ -82,9 +82,7 @@ void check_nifti(const PlacedLattice& lattice, const std::string& name) {
     throw OutputError(name + ": spacing and place do not fit in the 32 bits of NIfTI-1; see --scale");
   }
   if (const double displaced = nifti_displacement(lattice); displaced > kMostDisplaced) {
-    std::array<char, 16> text;
-    std::snprintf(text.data(), text.size(), "%.2g", displaced);
-    throw OutputError(name + ": the 32 bits of NIfTI-1 would displace samples by " + text.data() +
+    throw OutputError(name + ": the 32 bits of NIfTI-1 would displace samples by " + with_digits(displaced, 2) +
                       " voxels, so far from the origin; see --normalize, or take NRRD");
   }
 }

@@ -36,6 +36,13 @@ namespace raycone {
   return text.size() > kMost ? beginning + "..." : beginning;
 }
 
+// With so many significant digits, for people.
+[[nodiscard]] inline std::string with_digits(double number, int digits) {
+  std::array<char, 32> text;
+  const auto end = std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::general, digits);
+  return {text.data(), end.ptr};
+}
+
 // The shortest text that reads back as the same double.
 [[nodiscard]] inline std::string shortest_text(double number) {
   std::array<char, 32> text;

@@ -73,7 +73,9 @@ Lattice lattice_across(int axis, double at, Box box, const SliceRequest& request
   box.lower[axis] = at;
   box.upper[axis] = at;
   std::vector<Warning> none;  // a flat side is what is asked for
-  Lattice lattice = choose_lattice(box, {box, WorldPadding{}, LongestSide{request.size}, true}, none);
+  const LatticeRequest pixels{
+      .bounds = box, .padding = WorldPadding{}, .sampling = LongestSide{request.size}, .centers = true};
+  Lattice lattice = choose_lattice(box, pixels, none);
   const auto [right, up] = kAxesInPlane[static_cast<std::size_t>(axis)];
   for (const int in_plane : {right, up}) {
     const auto a = static_cast<std::size_t>(in_plane);

@@ -20,15 +20,13 @@
 #include "app/report/json.h"
 #include "app/run/field_run.h"
 #include "app/run/labels.h"
+#include "app/run/lattice_slabs.h"
 #include "app/run/mesh_run.h"
-#include "app/samples/disk_space.h"
 #include "app/samples/lattice_checks.h"
 #include "app/samples/lattice_choice.h"
-#include "app/samples/slabs.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
 #include "io/files/output_file.h"
-#include "io/vdb/read_vdb.h"
 
 namespace raycone {
 namespace {
@@ -52,108 +50,6 @@ double band_of_all(const Box& mesh_box, const PlacedLattice& lattice) {
   constexpr double kMore = 1 + 1e-9;  // so that rounding cuts nothing off
   const double width = std::min(std::hypot(sides.x, sides.y, sides.z), kLargest / 2) * kMore;
   return std::min(width / lattice.grid.spacing.x, kLargest);
-}
-
-// The slabs of a lattice, one after the other.
-class Slabs {
- public:
-  Slabs(const Lattice& lattice, const LatticeWriter& writer, std::int64_t samples)
-      : lattice_(lattice), axis_(writer.slab_axis()), alignment_(writer.slab_alignment()), samples_(samples) {}
-
-  [[nodiscard]] LatticeBlock first() const { return from(lattice_.index_min[static_cast<std::size_t>(axis_)]); }
-  [[nodiscard]] LatticeBlock behind(const LatticeBlock& slab) const {
-    const auto axis = static_cast<std::size_t>(axis_);
-    return from(slab.first[axis] + slab.counts[axis]);
-  }
-
- private:
-  [[nodiscard]] LatticeBlock from(std::int64_t index) const {
-    return slab_from(lattice_, axis_, alignment_, index, samples_);
-  }
-
-  const Lattice& lattice_;
-  int axis_;
-  std::int64_t alignment_, samples_;
-};
-
-// Loading the module for VDB maps stacks and other memory without touching it.
-std::unique_ptr<LatticeWriter> make_writer(const LatticeCommand& command, OutputFile& output,
-                                           const PlacedLattice& lattice, const OutputDescription& description,
-                                           const RunLimits& limits) {
-  constexpr double kMappedByModule = 160.0 * 1024 * 1024;
-  const bool loads = command.encoding.format == FieldFormat::kVdb && !vdb_module_is_loaded();
-  if (loads) cap_memory(limits.memory(), kMappedByModule);
-  std::unique_ptr<LatticeWriter> writer = make_lattice_writer(command.encoding.format, output, lattice, description);
-  if (loads) cap_memory(limits.memory());
-  return writer;
-}
-
-bool may_take_blocks(const LatticeCommand& command, const PlacedLattice& lattice) {
-  return may_use_blocks(command.field) && lattice.along_axes() && cuts_off(command.field.band, lattice.grid);
-}
-
-bool takes_blocks(const LatticeCommand& command, const LatticeWriter& writer, const PlacedLattice& lattice) {
-  return writer.takes_blocks() && may_take_blocks(command, lattice);
-}
-
-SlabKind slab_kind(const RunReport& report) { return {report.exterior_edges > 0, !report.lattice->along_axes()}; }
-
-double writer_memory(const LatticeCommand& command, const RunReport& report) {
-  const OutputDescription description = description_of(report, command.field, command.encoding);
-  return writer_memory(report.lattice->grid, command.encoding.format, description, slab_kind(report));
-}
-
-// Sides and distances alone have no values that a far field could be for.
-double working_memory(const LatticeCommand& command, const RunReport& report) {
-  const FieldOptions& field = command.field;
-  const bool has_values = field.has(Field::kWinding) || field.has(Field::kDensity) || field.diagnostics;
-  return has_values ? raycone::working_memory(slab_kind(report), static_cast<double>(report.samples)) : 0.0;
-}
-
-// What is needed beside what is in memory, as far as it is known before there is a writer. All of it for VDB, whose
-// module must be counted before it is loaded.
-double memory_to_begin(const LatticeCommand& command, const RunReport& report) {
-  constexpr double kTouchedByModule = 36.0 * 1024 * 1024;  // measured: 34 MB
-  const double of_writer = writer_memory(command, report) + working_memory(command, report);
-  if (command.encoding.format != FieldFormat::kVdb) return of_writer;
-  const Lattice& grid = report.lattice->grid;
-  SlabKind kind = slab_kind(report);
-  kind.blocks = may_take_blocks(command, *report.lattice);
-  const LatticeBlock smallest = slab_from(grid, 2, kVdbSlabAlignment, grid.index_min[2], 1);
-  const double module = vdb_module_is_loaded() ? 0.0 : kTouchedByModule;  // as in a worker that is used again
-  return module + of_writer + slab_memory(smallest, command.field, kind);
-}
-
-// Refuses lattices of which not even the smallest slab fits beside what is in memory.
-void check_slab_memory(const LatticeCommand& command, const LatticeWriter& writer, const RunReport& report,
-                       const RunLimits& limits) {
-  const LatticeBlock smallest = Slabs(report.lattice->grid, writer, 1).first();
-  SlabKind kind = slab_kind(report);
-  kind.blocks = takes_blocks(command, writer, *report.lattice);
-  const double bytes =
-      writer_memory(command, report) + slab_memory(smallest, command.field, kind) + working_memory(command, report);
-  check_memory(report.mesh, bytes, limits.memory());
-}
-
-// Refuses what the format cannot hold and what cannot fit, before any work on it.
-std::unique_ptr<LatticeWriter> open_writer(const LatticeCommand& command, MeshRun& run) {
-  const RunReport& report = run.report;
-  const FieldFormat format = command.encoding.format;
-  const OutputDescription description = description_of(report, command.field, command.encoding);
-  check_digits(report.output, *report.lattice, command.field, format, description);
-  check_memory(report.mesh, memory_to_begin(command, report), run.limits().memory());
-  run.output.reserve(least_lattice_file(format, description, report.samples));
-  std::unique_ptr<LatticeWriter> writer = make_writer(command, run.output, *report.lattice, description, run.limits());
-  check_slab_memory(command, *writer, report, run.limits());
-  return writer;
-}
-
-// Slabs as memory allows.
-Slabs slabs_of(const LatticeCommand& command, const LatticeWriter& writer, const RunReport& report,
-               const RunLimits& limits) {
-  const double taken = memory_in_use() + writer_memory(command, report) + working_memory(command, report);
-  const double left = static_cast<double>(limits.memory()) - taken;
-  return {report.lattice->grid, writer, slab_samples(command.field, slab_kind(report), left)};
 }
 
 // The mesh as a whole; where nothing is asked about it, one without triangles.
@@ -230,7 +126,7 @@ void prepare(LatticeCommand& command, LoadedMesh& loaded, MeshRun& run, LatticeW
   if (loaded.parts) {
     check_memory(run.report.mesh, LabelVolume::bytes(lattice.grid, loaded.parts->size()), run.limits().memory());
   }
-  work.writer = open_writer(command, run);
+  work.writer = open_lattice_writer(command, run);
   if (loaded.parts) work.labels = label_lattice(*loaded.parts, lattice, command.field, run);
   if (command.field.labels_only()) command.field.verify = 0;  // done
   const bool solid = command.field.has(Field::kSolid);

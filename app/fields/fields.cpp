@@ -92,15 +92,24 @@ FieldSamples::FieldSamples(const FieldOptions& options) : options_(options) {
   if (options.diagnostics) diagnostics_.emplace();
 }
 
+template <typename Visit>
+void FieldSamples::visit_numbers(const Visit& visit) {
+  visit(sides_, has_sides(options_));
+  visit(density_, options_.has(Field::kDensity));
+  visit(distances_, options_.has(Field::kDistance) && !uses_blocks_);
+  visit(solid_distances_, options_.has(Field::kSolid));
+  visit(gradients_, options_.has(Field::kGradient));
+  visit(labels_, options_.has(Field::kLabel));
+  visit(crossings_, options_.diagnostics);
+  visit(degenerate_, options_.diagnostics);
+  visit(on_surface_, options_.diagnostics);
+  visit(error_bound_, options_.diagnostics);
+}
+
 std::size_t FieldSamples::bytes_per_sample(const FieldOptions& options) {
   std::size_t bytes = sizeof(double);  // the winding number, or what takes its place
-  if (has_sides(options)) bytes += sizeof(std::uint8_t);
-  for (const Field field : options.fields) {
-    if (field == Field::kDensity || field == Field::kDistance || field == Field::kSolid) bytes += sizeof(double);
-    if (field == Field::kGradient) bytes += sizeof(Vec3);
-    if (field == Field::kLabel) bytes += sizeof(std::int32_t);
-  }
-  if (options.diagnostics) bytes += 2 * sizeof(std::int64_t) + sizeof(std::uint8_t) + sizeof(double);
+  FieldSamples(options).visit_numbers(
+      [&](const auto& numbers, bool are_wanted) { bytes += are_wanted ? sizeof numbers[0] : 0; });
   return bytes;
 }
 
@@ -126,18 +135,7 @@ FieldValues FieldSamples::values_of(Field field) const {
 
 void FieldSamples::resize(std::size_t count, From from) {
   winding_numbers_.resize(from == From::kWindingNumbers ? count : 0);
-  if (has_sides(options_)) sides_.resize(count);
-  if (options_.has(Field::kDensity)) density_.resize(count);
-  if (options_.has(Field::kDistance) && !uses_blocks_) distances_.resize(count);
-  if (options_.has(Field::kSolid)) solid_distances_.resize(count);
-  if (options_.has(Field::kGradient)) gradients_.resize(count);
-  if (options_.has(Field::kLabel)) labels_.resize(count);
-  if (diagnostics_) {
-    crossings_.resize(count);
-    degenerate_.resize(count);
-    on_surface_.resize(count);
-    error_bound_.resize(count);
-  }
+  visit_numbers([&](auto& numbers, bool are_wanted) { numbers.resize(are_wanted ? count : 0); });
   find_fields();
 }
 
@@ -153,16 +151,7 @@ void FieldSamples::find_fields() {
 void FieldSamples::to_index_order(const WorldOrder& order, const LatticeBlock& indices) {
   const WorldOrder::Walk walk = order.walk(indices);
   reorder(winding_numbers_, walk, indices);
-  reorder(sides_, walk, indices);
-  reorder(density_, walk, indices);
-  reorder(distances_, walk, indices);
-  reorder(solid_distances_, walk, indices);
-  reorder(labels_, walk, indices);
-  reorder(gradients_, walk, indices);
-  reorder(crossings_, walk, indices);
-  reorder(degenerate_, walk, indices);
-  reorder(on_surface_, walk, indices);
-  reorder(error_bound_, walk, indices);
+  visit_numbers([&](auto& numbers, bool /*are_wanted*/) { reorder(numbers, walk, indices); });
   find_fields();  // where they are now
 }
 

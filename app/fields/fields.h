@@ -93,6 +93,9 @@ class FieldSamples {
   [[nodiscard]] std::span<const FieldValues> fields() const { return fields_; }
 
  private:
+  // Calls visit(numbers, are_wanted) for all but winding numbers, which depend on what derive() begins with.
+  template <typename Visit>
+  void visit_numbers(const Visit& visit);
   [[nodiscard]] FieldValues values_of(Field field) const;
   void find_fields();
 

@@ -48,9 +48,7 @@ struct PointBlocks::Block {
   }
 
   SampleBlock block;
-  std::once_flag made;
-  std::vector<std::unique_ptr<Block>> parts;  // none if it is not divided
-  std::size_t degree = 0;                     // of its polynomial, if it is not
+  BuiltOnce<std::vector<std::unique_ptr<Block>>> parts;
 };
 
 PointBlocks::PointBlocks(const LatticeBlocks& blocks, const Box& box, double points)
@@ -58,7 +56,7 @@ PointBlocks::PointBlocks(const LatticeBlocks& blocks, const Box& box, double poi
       counts_{groups_along(0, axes_), groups_along(1, axes_), groups_along(2, axes_)},
       walk_(blocks, axes_, AxesOf::kCells),
       polynomial_(polynomial_kernel(blocks.level())),
-      groups_(std::make_unique<Group[]>(groups())) {
+      groups_(std::make_unique<BuiltOnce<Group>[]>(groups())) {
   for (int axis = 0; axis < 3; ++axis) {
     const std::vector<double>& ends = axes_[static_cast<std::size_t>(axis)];
     const double cells = static_cast<double>(ends.size() - 1);
@@ -97,74 +95,77 @@ PointBlocks::Corner PointBlocks::last_cell(const Corner& first) const {
   return last;
 }
 
-void PointBlocks::make(Block& block) const {
-  std::call_once(block.made, [&] {
-    LatticeBlocksWalk::Division division = walk_.divide(block.block);
-    if (!walk_.pays(block.block, division)) {
-      block.degree = walk_.degree(block.block);
-      return;
-    }
-    walk_.make_fields(division);
-    for (SampleBlock& part : division.children) block.parts.push_back(std::make_unique<Block>(std::move(part)));
-    block.block.near = {};
+PointBlocks::Block& PointBlocks::whole() const {
+  return *whole_.get([this] {
+    LatticeBlocksWalk::Division all = walk_.whole();
+    walk_.make_fields(all);
+    return std::make_unique<Block>(std::move(all.children.front()));
   });
 }
 
-void PointBlocks::make(std::uint32_t number, const Block& block) const {
-  Group& group = groups_[number];
-  std::call_once(group.made, [&] {
-    const Corner first = first_cell(number);
-    group.cover = walk_.cover_at(block.block, first, last_cell(first));
-    group.block = &block;
+const std::vector<std::unique_ptr<PointBlocks::Block>>& PointBlocks::parts_of(Block& block) const {
+  return block.parts.get([&] {
+    std::vector<std::unique_ptr<Block>> parts;
+    LatticeBlocksWalk::Division division = walk_.divide(block.block);
+    if (!walk_.pays(block.block, division)) return parts;
+    walk_.make_fields(division);
+    for (SampleBlock& part : division.children) parts.push_back(std::make_unique<Block>(std::move(part)));
+    block.block.near = {};  // nobody asks again, and all of them would take much memory
+    return parts;
+  });
+}
+
+void PointBlocks::make_group(std::uint32_t group, const Block& block) const {
+  groups_[group].get([&] {
+    const Corner first = first_cell(group);
+    return Group{block.block.field.get(), walk_.degree(block.block),
+                 walk_.cover_at(block.block, first, last_cell(first))};
   });
 }
 
 // Level by level, so that no thread waits for what another one makes.
 void PointBlocks::prepare(std::span<const std::uint32_t> groups) const {
-  std::call_once(whole_made_, [&] {
-    LatticeBlocksWalk::Division all = walk_.whole();
-    walk_.make_fields(all);
-    whole_ = std::make_unique<Block>(std::move(all.children.front()));
-  });
   struct Work {
     Block* block;
     std::vector<std::uint32_t> groups;
   };
-  std::vector<Work> level{{whole_.get(), {groups.begin(), groups.end()}}}, done;
+  std::vector<Work> level{{&whole(), {groups.begin(), groups.end()}}}, done;
   while (!level.empty()) {
-    parallel_for_each(level.size(), [&](std::size_t n) { make(*level[n].block); });
+    parallel_for_each(level.size(), [&](std::size_t n) { parts_of(*level[n].block); });
     std::vector<Work> next;
     for (Work& work : level) {
-      for (const std::unique_ptr<Block>& part : work.block->parts) {
+      const std::vector<std::unique_ptr<Block>>& parts = parts_of(*work.block);
+      for (const std::unique_ptr<Block>& part : parts) {
         Work& below = next.emplace_back(Work{part.get(), {}});
         std::ranges::copy_if(work.groups, std::back_inserter(below.groups),
                              [&](std::uint32_t group) { return part->has(first_cell(group)); });
         if (below.groups.empty()) next.pop_back();
       }
-      if (work.block->parts.empty()) done.push_back(std::move(work));
+      if (parts.empty()) done.push_back(std::move(work));
     }
     level = std::move(next);
   }
   parallel_for_each(done.size(), [&](std::size_t n) {
-    for (const std::uint32_t group : done[n].groups) make(group, *done[n].block);
+    for (const std::uint32_t group : done[n].groups) make_group(group, *done[n].block);
   });
 }
 
 PointBlocks::Sums::Sums(const PointBlocks& blocks, std::uint32_t group)
     : blocks_(blocks),
-      field_(blocks.groups_[group].block->block.field.get()),
-      degree_(blocks.groups_[group].block->degree),
-      cover_(blocks.groups_[group].cover),
-      cover_sums_(blocks.walk_.sums_of(cover_, blocks.first_cell(group), blocks.last_cell(blocks.first_cell(group)))) {}
+      group_(*blocks.groups_[group].if_built()),
+      cover_sums_(
+          blocks.walk_.sums_of(group_.cover, blocks.first_cell(group), blocks.last_cell(blocks.first_cell(group)))) {}
 
 void PointBlocks::Sums::evaluate(SampleTile& samples, std::span<double> sums) {
   samples.fill_up();
   alignas(64) Tile values{};
-  if (field_) blocks_.polynomial_(field_->coefficients, degree_, field_->cube, samples, values);
+  if (const FieldOnCube* const field = group_.field) {
+    blocks_.polynomial_(field->coefficients, group_.degree, field->cube, samples, values);
+    blocks_.walk_.count_polynomials(samples.count);
+  }
   cover_sums_.evaluate(samples, TileShape::kScattered,
                        [&](std::size_t i, double turns, double rest) { sums[i] = turns + (rest + values[i]); });
-  blocks_.walk_.count_terms(cover_, samples.count);
-  if (field_) blocks_.walk_.count_polynomials(samples.count);
+  blocks_.walk_.count_terms(group_.cover, samples.count);
 }
 
 }  // namespace raycone

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "core/far/lattice_blocks.h"
 #include "core/far/lattice_blocks_walk.h"
 #include "core/far/polynomial_kernel.h"
+#include "core/machine/built_once.h"
 
 namespace raycone {
 
@@ -25,6 +25,13 @@ namespace raycone {
 // A sum is within the tolerance of the blocks, and rounding. It depends on the triangles, their order, the box, the
 // number of points that are expected and the point alone: not on the other points, threads or SIMD level.
 class PointBlocks {
+  // What the points of a group need.
+  struct Group {
+    const FieldOnCube* field;  // none: no polynomial
+    std::size_t degree;        // of its polynomial
+    Cover cover;
+  };
+
  public:
   // For about so many points, evenly spread over a box that is not empty and has a size. `blocks` must outlive this.
   PointBlocks(const LatticeBlocks& blocks, const Box& box, double points);
@@ -53,35 +60,29 @@ class PointBlocks {
 
    private:
     const PointBlocks& blocks_;
-    const FieldOnCube* field_;  // none: no polynomial
-    std::size_t degree_;
-    const Cover& cover_;
+    const Group& group_;
     CoverSums cover_sums_;
   };
 
  private:
   struct Block;
-  // Where a group is and, once it is made, what it needs.
-  struct Group {
-    std::once_flag made;
-    const Block* block = nullptr;  // that is not divided
-    Cover cover;
-  };
   using Corner = std::array<std::size_t, 3>;
 
   [[nodiscard]] Corner first_cell(std::uint32_t group) const;
   [[nodiscard]] Corner last_cell(const Corner& first) const;
-  void make(Block& block) const;
-  void make(std::uint32_t group, const Block& block) const;
+  Block& whole() const;
+  // The parts of a block; none if it is not divided.
+  const std::vector<std::unique_ptr<Block>>& parts_of(Block& block) const;
+  // Makes a group in a block that is not divided.
+  void make_group(std::uint32_t group, const Block& block) const;
 
   LatticeAxes axes_;
   std::array<std::uint32_t, 3> counts_;  // of groups
   Vec3 cells_per_unit_;
   LatticeBlocksWalk walk_;
   PolynomialKernel polynomial_;
-  mutable std::once_flag whole_made_;
-  mutable std::unique_ptr<Block> whole_;
-  std::unique_ptr<Group[]> groups_;
+  BuiltOnce<std::unique_ptr<Block>> whole_;
+  std::unique_ptr<BuiltOnce<Group>[]> groups_;  // refer to fields of blocks
 };
 
 }  // namespace raycone

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/machine/threads.h"
@@ -145,21 +144,16 @@ std::uint8_t* LatticeSums::on_surface() {
 
 void LatticeSums::arrange() {
   if (dense_ || !counts_) return;
-  begin_.assign(rows_ + 2, 0);
-  for (const std::vector<RowCrossing>& part : parts_) {
-    for (const RowCrossing& c : part) ++begin_[c.row + 2];
-  }
-  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-  prefixes_.resize(kept_);
-  // begin_[row + 1] is the row's next free index, and its end when all are filled.
-  for (const std::vector<RowCrossing>& part : parts_) {
-    for (const RowCrossing& c : part) prefixes_[begin_[c.row + 1]++] = {c.samples, c.sigma};
-  }
+  prefixes_ = {rows_, [&](const auto& emit) {
+                 for (const std::vector<RowCrossing>& part : parts_) {
+                   for (const RowCrossing& c : part) emit(c.row, RowPrefix{c.samples, c.sigma});
+                 }
+               }};
   parts_ = {};
 }
 
 void LatticeSums::sum_prefixes(std::size_t row) {
-  const std::span<RowPrefix> prefixes = std::span(prefixes_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
+  const std::span<RowPrefix> prefixes = prefixes_[row];
   std::ranges::sort(prefixes, std::ranges::greater{}, &RowPrefix::samples);
   const std::span<double> sums = crossings_.subspan(row * samples_, samples_);
   double sum = 0.0;
@@ -174,7 +168,7 @@ void LatticeSums::sum_prefixes(std::size_t row) {
 }
 
 void LatticeSums::make_runs(std::size_t row) {
-  const std::span<RowPrefix> prefixes = std::span(prefixes_).subspan(begin_[row], begin_[row + 1] - begin_[row]);
+  const std::span<RowPrefix> prefixes = prefixes_[row];
   std::ranges::sort(prefixes, std::ranges::less{}, &RowPrefix::samples);
   std::int32_t sum = 0;
   for (std::size_t i = prefixes.size(); i-- > 0;) prefixes[i].crossings = sum += prefixes[i].crossings;

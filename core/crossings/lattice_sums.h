@@ -12,6 +12,7 @@
 
 #include "core/crossings/crossings.h"
 #include "core/data/diagnostics.h"
+#include "core/machine/sorted_by_key.h"
 
 namespace raycone {
 
@@ -119,7 +120,7 @@ class LatticeSums {
   // The crossings of a row that is finished; where runs were asked for.
   [[nodiscard]] RowRuns runs(std::size_t row) const {
     if (dense_) return RowRuns(std::span<const double>(crossings_).subspan(row * samples_, samples_));
-    return RowRuns(std::span(prefixes_).subspan(begin_[row], begin_[row + 1] - begin_[row]));
+    return RowRuns(prefixes_[row]);
   }
 
   // Edge sides that were ties, over all samples.
@@ -146,8 +147,7 @@ class LatticeSums {
   // Few crossings are kept as they come, until they are arranged by row.
   std::vector<std::vector<RowCrossing>> parts_;
   std::size_t kept_ = 0;
-  std::vector<std::size_t> begin_;  // per row, into prefixes_; and the end
-  std::vector<RowPrefix> prefixes_;
+  SortedByKey<RowPrefix> prefixes_;  // by row
   // Many are added up: crossings_[i] is then what is said of the samples of its row up to i and no further.
   std::atomic<bool> dense_ = false;
   std::vector<std::uint8_t> own_on_surface_;  // where there are no diagnostics; empty as long as nothing is on it

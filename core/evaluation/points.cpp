@@ -5,11 +5,13 @@
 #include <limits>
 #include <mutex>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "core/data/space_curve.h"
 #include "core/evaluation/point_tile.h"
 #include "core/machine/buckets.h"
+#include "core/machine/sorted_by_key.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -45,12 +47,10 @@ class CoherentOrder {
 
   // Those of one bucket, in order.
   [[nodiscard]] std::vector<SortedPoint> operator[](std::size_t bucket) const {
-    std::vector<std::uint32_t> next(keys_per_bucket_ + 1);
-    for (const SortedPoint& p : buckets_[bucket]) ++next[p.key % keys_per_bucket_ + 1];
-    std::partial_sum(next.begin(), next.end(), next.begin());
-    std::vector<SortedPoint> ordered(buckets_[bucket].size());
-    for (const SortedPoint& p : buckets_[bucket]) ordered[next[p.key % keys_per_bucket_]++] = p;
-    return ordered;
+    SortedByKey<SortedPoint, std::uint32_t> sorted(keys_per_bucket_, [&](const auto& emit) {
+      for (const SortedPoint& p : buckets_[bucket]) emit(p.key % keys_per_bucket_, p);
+    });
+    return std::move(sorted).release();
   }
 
  private:

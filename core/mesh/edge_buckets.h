@@ -2,15 +2,15 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
 #include "core/machine/buckets.h"
+#include "core/machine/sorted_by_key.h"
 
 namespace raycone {
 
@@ -52,16 +52,12 @@ void sort_by_key(std::span<Traversal> traversals) {
 // vertex counted from the bucket's first.
 template <class Traversal>
 [[nodiscard]] std::vector<Traversal> sorted_traversals(std::span<const Traversal> bucket) {
-  std::array<std::size_t, kEdgeBucketMask + 3> begin{};  // one vertex may have more than 2^32
-  for (const Traversal& t : bucket) ++begin[t.low_in_bucket() + 2];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<Traversal> all(bucket.size());
-  // begin[v + 1] is the next free place of vertex v, and its end when all are filled.
-  for (const Traversal& t : bucket) all[begin[t.low_in_bucket() + 1]++] = t;
-  for (std::size_t v = 0; v <= kEdgeBucketMask; ++v) {
-    sort_by_key(std::span(all).subspan(begin[v], begin[v + 1] - begin[v]));
-  }
-  return all;
+  // One vertex may have more than 2^32.
+  SortedByKey<Traversal> sorted(kEdgeBucketMask + 1, [&](const auto& emit) {
+    for (const Traversal& t : bucket) emit(t.low_in_bucket(), t);
+  });
+  for (std::size_t v = 0; v < sorted.keys(); ++v) sort_by_key(sorted[v]);
+  return std::move(sorted).release();
 }
 
 }  // namespace raycone

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
-#include <functional>
-#include <numeric>
 #include <span>
+
+#include "core/machine/sorted_by_key.h"
 
 namespace raycone {
 namespace {
@@ -87,29 +87,20 @@ class Chains {
  public:
   Chains(const TriangleMesh& mesh, std::span<const ExteriorEdge> edges) : edges_(edges), used_(edges.size(), false) {
     const EdgeVertices vertices(mesh, edges);
-    std::vector<std::uint32_t> counts(vertices.size(), 0);
     ends_.reserve(edges.size());
-    for (const ExteriorEdge& e : edges) {
-      const Ends& ends = ends_.emplace_back(Ends{vertices.rank(e.from), vertices.rank(e.to)});
-      ++counts[ends.from];
-      ++counts[ends.to];
-    }
-    first_.assign(counts.size() + 1, 0);
-    std::inclusive_scan(counts.begin(), counts.end(), first_.begin() + 1, std::plus<>(), std::size_t{0});
-    next_.assign(first_.begin(), first_.end() - 1);
-    incidences_.resize(first_.back());
-    for (std::size_t i = 0; i < edges.size(); ++i) {
-      incidences_[next_[ends_[i].from]++] = {ends_[i].to, i};
-      incidences_[next_[ends_[i].to]++] = {ends_[i].from, i};
-    }
-    for (std::size_t v = 0; v < counts.size(); ++v) {
-      next_[v] = first_[v];
-      std::ranges::sort(std::span(incidences_).subspan(first_[v], counts[v]));
-    }
+    for (const ExteriorEdge& e : edges) ends_.push_back({vertices.rank(e.from), vertices.rank(e.to)});
+    incidences_ = {vertices.size(), [&](const auto& emit) {
+                     for (std::size_t i = 0; i < edges.size(); ++i) {
+                       emit(ends_[i].from, Incidence{ends_[i].to, i});
+                       emit(ends_[i].to, Incidence{ends_[i].from, i});
+                     }
+                   }};
+    for (std::size_t v = 0; v < vertices.size(); ++v) std::ranges::sort(incidences_[v]);
+    used_up_.assign(vertices.size(), 0);
   }
 
   void append_to(std::vector<ExteriorEdge>& ordered) {
-    for (std::uint32_t start = 0; start < next_.size(); ++start) {
+    for (std::uint32_t start = 0; start < used_up_.size(); ++start) {
       std::uint32_t here = start;
       while (const Incidence* next = unused_incidence(here)) {
         const ExteriorEdge& e = edges_[next->edge];
@@ -134,17 +125,17 @@ class Chains {
   };
 
   const Incidence* unused_incidence(std::uint32_t vertex) {
-    std::size_t& next = next_[vertex];
-    while (next < first_[vertex + 1] && used_[incidences_[next].edge]) ++next;
-    return next < first_[vertex + 1] ? &incidences_[next] : nullptr;
+    const std::span<const Incidence> all = incidences_[vertex];
+    std::size_t& next = used_up_[vertex];
+    while (next < all.size() && used_[all[next].edge]) ++next;
+    return next < all.size() ? &all[next] : nullptr;
   }
 
   std::span<const ExteriorEdge> edges_;
-  std::vector<Ends> ends_;  // of edges
-  std::vector<bool> used_;  // likewise
-  // Those of vertex v are [first_[v], first_[v + 1]); all before next_[v] are used.
-  std::vector<Incidence> incidences_;
-  std::vector<std::size_t> first_, next_;
+  std::vector<Ends> ends_;             // of edges
+  std::vector<bool> used_;             // likewise
+  SortedByKey<Incidence> incidences_;  // by vertex; those of one in order
+  std::vector<std::size_t> used_up_;   // of each vertex: so many of its incidences, from the first on, are used
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/machine/sorted_by_key.h"
 
 namespace raycone {
 
@@ -15,9 +16,9 @@ class MeshSplit {
   // Face f belongs to the part part_of[f], which is below `parts`. Takes time in proportion to the mesh.
   MeshSplit(TriangleMesh mesh, std::span<const std::uint32_t> part_of, std::uint32_t parts);
 
-  [[nodiscard]] std::uint32_t parts() const { return static_cast<std::uint32_t>(begins_.size() - 1); }
+  [[nodiscard]] std::uint32_t parts() const { return static_cast<std::uint32_t>(faces_.keys()); }
   [[nodiscard]] const TriangleMesh& whole() const { return mesh_; }
-  [[nodiscard]] std::uint64_t faces(std::uint32_t part) const { return begins_[part + 1] - begins_[part]; }
+  [[nodiscard]] std::uint64_t faces(std::uint32_t part) const { return faces_[part].size(); }
 
   // The faces of a part in their order, with the vertices that they use in the order of their first use. Takes time in
   // proportion to the part. One call at a time.
@@ -27,8 +28,7 @@ class MeshSplit {
   static constexpr std::uint32_t kUnused = 0xFFFFFFFF;
 
   TriangleMesh mesh_;
-  std::vector<std::size_t> begins_;    // of each part in faces_, and the end
-  std::vector<std::uint32_t> faces_;   // by part
+  SortedByKey<std::uint32_t> faces_;   // by part
   std::vector<std::uint32_t> number_;  // of each vertex in the part at hand; kUnused in between
 };
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <vector>
 
 namespace raycone {
 
@@ -20,15 +21,12 @@ RayGrid::RayGrid(std::span<const Vec3> points) : points_(points) {
   side_ = static_cast<std::size_t>(std::clamp(2.0 * std::sqrt(static_cast<double>(points.size())), 1.0, kMostCells));
   per_y_ = cells_per_half(lower_y_, upper_y_);
   per_z_ = cells_per_half(lower_z_, upper_z_);
-  begin_.assign(side_ * side_ + 1, 0);
-  for (const Vec3& p : points) ++begin_[cell(p) + 1];
-  for (std::size_t i = 1; i < begin_.size(); ++i) begin_[i] += begin_[i - 1];
-  rays_.resize(points.size());
-  std::vector<std::size_t> next(begin_.begin(), begin_.end() - 1);
   std::vector<std::size_t> by_x(points.size());
   std::iota(by_x.begin(), by_x.end(), std::size_t{0});
   std::ranges::sort(by_x, {}, [points](std::size_t i) { return points[i].x; });
-  for (const std::size_t i : by_x) rays_[next[cell(points[i])]++] = i;
+  rays_ = {side_ * side_, [&](const auto& emit) {
+             for (const std::size_t i : by_x) emit(cell(points[i]), i);
+           }};
 }
 
 double RayGrid::cells_per_half(double lower, double upper) const {

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "core/data/vec3.h"
+#include "core/machine/sorted_by_key.h"
 
 namespace raycone {
 
@@ -29,15 +29,15 @@ class RayGrid {
     const std::size_t last_z = place(z1, lower_z_, per_z_);
     for (std::size_t z = place(z0, lower_z_, per_z_); z <= last_z; ++z) {
       // From one cell with points to the next: a large triangle is over many without.
-      const std::size_t row_end = begin_[z * side_ + last_y + 1];
-      for (std::size_t at = begin_[z * side_ + first_y]; at != row_end;) {
-        const std::size_t here = cell(points_[rays_[at]]);
+      const std::size_t row_end = rays_.before(z * side_ + last_y + 1);
+      for (std::size_t at = rays_.before(z * side_ + first_y); at != row_end;) {
+        const std::size_t here = cell(points_[rays_.all()[at]]);
         for (const std::size_t i : from(x, here)) {
           const Vec3& q = points_[i];
           if (q.x > x1) break;
           if (q.y >= y0 && q.y <= y1 && q.z >= z0 && q.z <= z1) visit(i);
         }
-        at = begin_[here + 1];
+        at = rays_.before(here + 1);
       }
     }
   }
@@ -45,10 +45,8 @@ class RayGrid {
  private:
   // The points of a cell from x on.
   [[nodiscard]] std::span<const std::size_t> from(double x, std::size_t cell) const {
-    const auto end = rays_.begin() + static_cast<std::ptrdiff_t>(begin_[cell + 1]);
-    return {std::ranges::lower_bound(rays_.begin() + static_cast<std::ptrdiff_t>(begin_[cell]), end, x, {},
-                                     [this](std::size_t i) { return points_[i].x; }),
-            end};
+    const std::span<const std::size_t> rays = rays_[cell];
+    return {std::ranges::lower_bound(rays, x, {}, [this](std::size_t i) { return points_[i].x; }), rays.end()};
   }
   // Monotone in the coordinate: a point within an interval lies in a cell between those of its ends. By halves, whose
   // differences do not overflow.
@@ -65,8 +63,7 @@ class RayGrid {
   double lower_y_, lower_z_, upper_y_, upper_z_;
   double per_y_ = 0.0, per_z_ = 0.0;  // cells per half of a unit
   std::size_t side_;
-  std::vector<std::size_t> begin_;  // per cell, and the end
-  std::vector<std::size_t> rays_;   // by cell, and by x
+  SortedByKey<std::size_t> rays_;  // by cell; those of one by x
 };
 
 }  // namespace raycone

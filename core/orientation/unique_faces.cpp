@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <span>
 #include <utility>
 
 #include "core/machine/buckets.h"
+#include "core/machine/sorted_by_key.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -31,16 +31,11 @@ bool rises(const Triangle& t) { return ((t[0] < t[1]) + (t[1] < t[2]) + (t[2] < 
 // A counting sort by the lowest corner; few faces share it nearly always.
 void sort_by_corners(std::span<FiledFace> bucket) {
   constexpr std::size_t kVertices = std::size_t{1} << kVerticesPerBucketLog2;
-  std::array<std::size_t, kVertices + 2> begin{};
-  for (const FiledFace& f : bucket) ++begin[f.lowest % kVertices + 2];
-  std::partial_sum(begin.begin(), begin.end(), begin.begin());
-  std::vector<FiledFace> sorted(bucket.size());
-  for (const FiledFace& f : bucket) sorted[begin[f.lowest % kVertices + 1]++] = f;
-  for (std::size_t v = 0; v < kVertices; ++v) {
-    std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(begin[v]),
-              sorted.begin() + static_cast<std::ptrdiff_t>(begin[v + 1]));
-  }
-  std::copy(sorted.begin(), sorted.end(), bucket.begin());
+  SortedByKey<FiledFace> sorted(kVertices, [&](const auto& emit) {
+    for (const FiledFace& f : bucket) emit(f.lowest % kVertices, f);
+  });
+  for (std::size_t v = 0; v < kVertices; ++v) std::sort(sorted[v].begin(), sorted[v].end());
+  std::ranges::copy(sorted.all(), bucket.begin());
 }
 
 struct SameFaces {

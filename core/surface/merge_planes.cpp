@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/machine/first_touch.h"
+#include "core/machine/sorted_by_key.h"
 #include "core/machine/threads.h"
 #include "core/surface/surface_edit.h"
 
@@ -41,12 +42,11 @@ void sort_numbers(std::vector<std::uint32_t>& numbers, std::vector<std::uint32_t
 
 // The numbers of faces by brick, and of each vertex the brick that has all of its faces.
 struct PlaneMerger::Bricks {
-  std::vector<std::uint32_t> faces;
-  std::vector<std::size_t> begin;     // of each brick's in `faces`; one more at the end
+  SortedByKey<std::uint32_t> faces;
   std::vector<std::uint32_t> owner;   // kNone where several bricks have faces there; kUnmet where none has
   std::vector<std::uint32_t> places;  // of each brick among all of the lattice's
 
-  [[nodiscard]] std::size_t count() const { return begin.size() - 1; }
+  [[nodiscard]] std::size_t count() const { return faces.keys(); }
   [[nodiscard]] std::uint32_t place_of_owner(std::uint32_t vertex) const {
     return owner[vertex] < count() ? places[owner[vertex]] : owner[vertex];
   }
@@ -115,7 +115,7 @@ class BrickMerger {
 
   void merge_all(const Bricks& bricks) {
     local_.assign(vertices_.size(), kNone);
-    parallel_for(bricks.begin.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
+    parallel_for(bricks.count(), 1, [&](std::size_t begin, std::size_t end) {
       for (auto brick = static_cast<std::uint32_t>(begin); brick < end; ++brick) merge_one(bricks, brick);
     });
   }
@@ -135,7 +135,7 @@ class BrickMerger {
   // Those bricks alone that have a vertex of `changed`, from `first` on, as merge_all() would: a vertex that is kept or
   // is no longer so matters to the one brick that has all of its faces.
   void merge_again(const Bricks& all, const std::vector<std::uint32_t>& changed, const std::vector<Triangle>& first) {
-    std::vector<std::uint8_t> again(all.begin.size() - 1, 0);
+    std::vector<std::uint8_t> again(all.count(), 0);
     for (const std::uint32_t v : changed) {
       if (all.owner[v] < again.size()) again[all.owner[v]] = 1;
     }
@@ -145,8 +145,8 @@ class BrickMerger {
       work_.settled[v] = 0;
     }
     for (std::size_t brick = 0; brick < again.size(); ++brick) {
-      for (std::size_t n = all.begin[brick]; n < all.begin[brick + 1] && again[brick] != 0; ++n)
-        work_.triangles[all.faces[n]] = first[all.faces[n]];
+      if (again[brick] == 0) continue;
+      for (const std::uint32_t face : all.faces[brick]) work_.triangles[face] = first[face];
     }
     local_.assign(vertices_.size(), kNone);
     parallel_for(again.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -176,14 +176,12 @@ class BrickMerger {
   }
 
   [[nodiscard]] Bricks sorted(const std::vector<std::uint32_t>& brick_of, std::size_t count) const {
-    Bricks result{std::vector<std::uint32_t>(brick_of.size()),
-                  std::vector<std::size_t>(count + 1, 0),
+    Bricks result{{count,
+                   [&](const auto& emit) {
+                     for (std::uint32_t face = 0; face < brick_of.size(); ++face) emit(brick_of[face], face);
+                   }},
                   std::vector<std::uint32_t>(vertices_.size(), kUnmet),
                   {}};
-    for (const std::uint32_t brick : brick_of) ++result.begin[brick + 1];
-    for (std::size_t brick = 0; brick < count; ++brick) result.begin[brick + 1] += result.begin[brick];
-    std::vector<std::size_t> next(result.begin.begin(), result.begin.end() - 1);
-    for (std::uint32_t face = 0; face < brick_of.size(); ++face) result.faces[next[brick_of[face]]++] = face;
     find_owners(brick_of, result.owner);
     return result;
   }
@@ -203,8 +201,7 @@ class BrickMerger {
 
   // Bricks change their own faces only, and where their own vertices are pulled.
   void merge_one(const Bricks& bricks, std::uint32_t brick, std::vector<std::uint32_t>* changed = nullptr) {
-    const auto faces =
-        std::span(bricks.faces).subspan(bricks.begin[brick], bricks.begin[brick + 1] - bricks.begin[brick]);
+    const std::span<const std::uint32_t> faces = bricks.faces[brick];
     if (faces.size() > PatchMerger::kMostFaces) return;
     std::vector<std::uint32_t> global;
     const SurfacePatch patch = patch_of(faces, bricks.owner, brick, global);
@@ -314,15 +311,14 @@ std::vector<std::uint8_t> PlaneMerger::SecondPass::same_bricks(const SecondPass&
                                                                const std::vector<std::uint32_t>& same) const {
   std::vector<std::uint32_t> size_then(bricks.places.empty() ? 0 : 1 + std::ranges::max(bricks.places), 0);
   for (std::size_t brick = 0; brick < bricks.count(); ++brick)
-    size_then[bricks.places[brick]] = static_cast<std::uint32_t>(bricks.begin[brick + 1] - bricks.begin[brick]);
+    size_then[bricks.places[brick]] = static_cast<std::uint32_t>(bricks.faces[brick].size());
   const auto is_same_vertex = [&](std::uint32_t v) {
     return kept[v] == now.kept[v] && settled_before[v] == now.settled_before[v] &&
            bricks.place_of_owner(v) == now.bricks.place_of_owner(v);
   };
   std::vector<std::uint8_t> result(now.bricks.count(), 0);
   parallel_for_each(result.size(), [&](std::size_t brick) {
-    const auto of_brick = std::span(now.bricks.faces)
-                              .subspan(now.bricks.begin[brick], now.bricks.begin[brick + 1] - now.bricks.begin[brick]);
+    const std::span<const std::uint32_t> of_brick = now.bricks.faces[brick];
     const std::uint32_t place = now.bricks.places[brick];
     const bool is_same = place < size_then.size() && size_then[place] == of_brick.size() &&
                          std::ranges::all_of(of_brick, [&](std::uint32_t face) {
@@ -340,10 +336,7 @@ void PlaneMerger::SecondPass::repeat(SecondPass& now, const std::vector<std::uin
   for (std::uint32_t brick = 0; brick < bricks.count(); ++brick) brick_then[bricks.places[brick]] = brick;
   for (std::size_t brick = 0; brick < known.size(); ++brick) {
     if (known[brick] == 0) continue;
-    for (std::size_t n = now.bricks.begin[brick]; n < now.bricks.begin[brick + 1]; ++n) {
-      const std::uint32_t face = now.bricks.faces[n];
-      merged.triangles[face] = after[same[face]];
-    }
+    for (const std::uint32_t face : now.bricks.faces[brick]) merged.triangles[face] = after[same[face]];
     now.changed[brick] = changed[brick_then[now.bricks.places[brick]]];
     for (const std::uint32_t v : now.changed[brick]) settled[v] = 0;
   }

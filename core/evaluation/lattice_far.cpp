@@ -36,7 +36,8 @@ bool blocks_may_pay(const ScaledMesh& mesh, const Lattice& lattice) {
   constexpr std::int64_t kMostAlong = 1 << 20;  // samples
   constexpr std::int64_t kLeastAlong = 8;
   const Summation summation = mesh.options().summation;
-  if (!mesh.has_blocks() || (summation != Summation::kCheapest && summation != Summation::kBlocks)) return false;
+  if (summation != Summation::kCheapest && summation != Summation::kBlocks) return false;
+  if (!mesh.choice().has_blocks()) return false;
   for (const std::int64_t count : lattice.counts) {
     if (count > kMostAlong || count < kLeastAlong) return false;
   }
@@ -44,7 +45,7 @@ bool blocks_may_pay(const ScaledMesh& mesh, const Lattice& lattice) {
   if (summation == Summation::kBlocks) return true;
   const bool left_to_far_field =
       samples < kSmallLattice && (!mesh.counts_crossings() || mesh.boundary().exterior_edges() >= kManyForSmall);
-  return samples >= kLeastSamples && mesh.direct_cost() * samples >= kLeastCost && !left_to_far_field;
+  return samples >= kLeastSamples && mesh.choice().direct_cost() * samples >= kLeastCost && !left_to_far_field;
 }
 
 }  // namespace
@@ -62,7 +63,7 @@ std::optional<LatticeAxes> axes_for_blocks(const ScaledMesh& mesh, const Lattice
   }
   if (!mesh.blocks().are_sound) return std::nullopt;
   if (mesh.options().summation == Summation::kBlocks) return axes;
-  const double samples = lattice.samples(), direct = mesh.direct_cost();
+  const double samples = lattice.samples(), direct = mesh.choice().direct_cost();
   const bool far = takes_far_field_on_lattice(mesh);
   const double other = far ? std::min(direct, far_field_cost(mesh)) : direct;
   // The tree is there by now.
@@ -89,10 +90,10 @@ double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_
   constexpr double kSource = 1e-5;            // in the tree
   if (mesh.is_closed()) return 0.0;
   const double edge = edge_seconds(mesh.options().level), samples = lattice.samples();
-  const double direct = (kSample + edge * mesh.direct_cost()) * samples;
+  const double direct = (kSample + edge * mesh.choice().direct_cost()) * samples;
   if (!by_far_field) return direct;
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
-    const double once = kBlocksOnLattice.fit + kBlocksOnLattice.tree * mesh.direct_cost();
+    const double once = kBlocksOnLattice.fit + kBlocksOnLattice.tree * mesh.choice().direct_cost();
     return kSampleOfBlocks * samples + edge * (cost_in_blocks(mesh, *axes) * samples + once);
   }
   if (takes_far_field_on_lattice(mesh)) {
@@ -108,7 +109,7 @@ namespace {
 class BlockValues {
  public:
   BlockValues(const ScaledMesh& mesh, const LatticeAxes& axes)
-      : mesh_(mesh), axes_(axes), doubt_(mesh.doubt_of_blocks()) {}
+      : mesh_(mesh), axes_(axes), doubt_(mesh.choice().doubt_of_blocks()) {}
 
   // Sets the values of samples of a row from `sample` on, all with the same crossings, less those of the caps.
   void set(const std::array<std::size_t, 3>& sample, std::span<const double> sums, double crossings,

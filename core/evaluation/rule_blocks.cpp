@@ -42,7 +42,7 @@ bool is_boundary_all_over(const ScaledMesh& mesh) {
          kAllOver * static_cast<double>(mesh.mesh().triangles.size());
 }
 
-bool takes_rough_sums(const ScaledMesh& mesh) { return mesh.has_rough_sums() && mesh.blocks().are_sound; }
+bool takes_rough_sums(const ScaledMesh& mesh) { return mesh.choice().has_rough_sums() && mesh.blocks().are_sound; }
 
 // Whether looking for certificates takes longer than what they save: measured; with fewer edges they save up to a
 // third. Soups have hardly a block that one decides.
@@ -111,7 +111,7 @@ class RuleBlocks {
         mesh_(samples.mesh()),
         changes_(mesh_.change_bound()),
         matrices_(matrix_kernel(mesh_.options().level)),
-        has_rough_sums_(mesh_.has_rough_sums()),
+        has_rough_sums_(mesh_.choice().has_rough_sums()),
         blocks_(rows_, changes_.wide_caps(), cones_of(mesh_.boundary())) {}
 
   [[nodiscard]] std::size_t size() const { return blocks_.size(); }

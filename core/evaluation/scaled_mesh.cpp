@@ -6,7 +6,6 @@
 
 #include "core/boundary/cone.h"
 #include "core/boundary/solid_angles.h"
-#include "core/evaluation/costs.h"
 
 namespace raycone {
 namespace {
@@ -30,8 +29,6 @@ std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, cons
   return std::make_unique<const Cone>(boundary, options.level);
 }
 
-constexpr double kFarShare = 0.75;  // of the tolerance; near triangles round, too
-
 }  // namespace
 
 ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const EvaluatorOptions& options)
@@ -41,16 +38,12 @@ ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const Evaluat
       mesh_(in_scale(std::move(mesh), scale)),
       is_in_scale_(scale.exponent() != 0 || largest_exponent(mesh_) <= 0),
       boundary_(options.edges ? Boundary(mesh_, *options.edges) : Boundary(mesh_)),
-      term_(boundary_term(mesh_, boundary_, is_in_scale_, options)) {
+      term_(boundary_term(mesh_, boundary_, is_in_scale_, options)),
+      choice_(options, {boundary_, mesh_.triangles.size(), counts_crossings(), is_in_scale_}) {
   options_.edges = nullptr;
 }
 
 TriangleMesh ScaledMesh::unscaled_mesh() const { return in_scale(mesh_, inverse_); }
-
-double ScaledMesh::direct_cost() const {
-  return counts_crossings() ? static_cast<double>(boundary_.exterior_edges())
-                            : kTriangleCost * static_cast<double>(mesh_.triangles.size());
-}
 
 const RayCaster& ScaledMesh::rays() const {
   return rays_.get([this] { return RayCaster(mesh_); });
@@ -80,7 +73,7 @@ const Blocks& ScaledMesh::blocks() const {
     SolidFaces faces = solid_faces(counts_crossings() ? caps().mesh : mesh_);
     const auto near = counts_crossings() ? LatticeBlocks::Near::kBoundary : LatticeBlocks::Near::kTriangles;
     return Blocks{!faces.has_repeated_faces,
-                  LatticeBlocks(std::move(faces.triangles), tolerance(), options_.level, near)};
+                  LatticeBlocks(std::move(faces.triangles), choice_.tolerance(), options_.level, near)};
   });
 }
 
@@ -97,21 +90,12 @@ Box box_for_points(const TriangleMesh& mesh) {
 
 // Where the estimate says that it takes less time.
 std::unique_ptr<const BlocksOfPoints> ScaledMesh::make_blocks_of_points() const {
-  constexpr double kSafety = 0.75;      // estimates are no better
-  constexpr double kLeastPoints = 2e5;  // an estimate takes as long as some thousand points, ...
-  constexpr double kLeastCost = 4e7;    // ... of some hundred edges
-  const double points = options_.accuracy.points;
-  const bool forced = options_.summation == Summation::kBlocks;
-  if (!(points > 0.0) || (!forced && options_.summation != Summation::kCheapest) || !has_blocks()) return nullptr;
-  const double direct = direct_cost();
-  if (!forced && (points < kLeastPoints || direct * points < kLeastCost)) return nullptr;
-  if (!blocks().are_sound) return nullptr;
-  std::unique_ptr<const BlocksOfPoints> result(
-      new BlocksOfPoints{CapCrossings(caps().mesh), PointBlocks(blocks().sums, box_for_points(mesh_), points)});
+  if (!choice_.blocks_of_points_may_pay() || !blocks().are_sound) return nullptr;
+  std::unique_ptr<const BlocksOfPoints> result(new BlocksOfPoints{
+      CapCrossings(caps().mesh), PointBlocks(blocks().sums, box_for_points(mesh_), options_.accuracy.points)});
+  const double direct = choice_.direct_cost();
   const double other = has_far_field() ? std::min(direct, far_field()->cost()) : direct;
-  const double at_point = kBlocksAtPoints.in_blocks * result->sums.cost() + kBlocksAtPoints.beside_blocks;
-  const double cost = at_point * points + kBlocksAtPoints.fit + kBlocksAtPoints.tree * direct;
-  return forced || cost < kSafety * other * points ? std::move(result) : nullptr;
+  return choice_.blocks_of_points_pay(result->sums.cost(), other) ? std::move(result) : nullptr;
 }
 
 const BlocksOfPoints* ScaledMesh::blocks_of_points() const {
@@ -120,26 +104,18 @@ const BlocksOfPoints* ScaledMesh::blocks_of_points() const {
 
 // The far field, where it is asked for and estimated to be cheaper.
 std::unique_ptr<const FarField> ScaledMesh::make_far_field() const {
-  if (!term_ || !is_in_scale_ || !(tolerance() >= kLeastTolerance)) return nullptr;
-  // Many a sample lies in the plane of flat caps, which are ties then.
-  if (counts_crossings() && boundary_.is_flat()) return nullptr;
-  const bool forced = options_.summation == Summation::kFarField;
-  constexpr std::size_t kTooFew = 100;  // exterior edges: no far field is cheaper
-  const bool may_pay = options_.summation == Summation::kCheapest && boundary_.exterior_edges() >= kTooFew;
-  if (!forced && !may_pay) return nullptr;
+  if (!choice_.may_have_far_field()) return nullptr;
   std::unique_ptr<const FarField> far;
   const TriangleMesh* const sources = counts_crossings() ? &caps().mesh : nullptr;
-  if (options_.accuracy.sides_only && has_rough_sums()) {  // they need the tree, too
+  if (options_.accuracy.sides_only && choice_.has_rough_sums()) {  // they need the tree, too
     if (!blocks().are_sound) return nullptr;
     const LatticeBlocks& sums = blocks().sums;
     far =
         std::make_unique<const FarField>(mesh_, boundary_, sources, sums.tree(), sums.tree_tolerance(), options_.level);
   } else {
-    far = std::make_unique<const FarField>(mesh_, boundary_, sources, kFarShare * tolerance(), options_.level);
+    far = std::make_unique<const FarField>(mesh_, boundary_, sources, choice_.tolerance_of_far_field(), options_.level);
   }
-  if (far->has_repeated_faces()) return nullptr;
-  constexpr double kSafety = 0.8;  // estimates are no better
-  return forced || far->cost() < kSafety * direct_cost() ? std::move(far) : nullptr;
+  return !far->has_repeated_faces() && choice_.far_field_pays(far->cost()) ? std::move(far) : nullptr;
 }
 
 const FarField* ScaledMesh::far_field() const {
@@ -151,13 +127,7 @@ const FarField* ScaledMesh::far_field_without_waiting() const {
   return far_field();
 }
 
-bool ScaledMesh::has_far_field() const {
-  const bool forced = options_.summation == Summation::kFarField;
-  const bool caps = counts_crossings();
-  const double sources = static_cast<double>(caps ? boundary_.exterior_edges() : mesh_.triangles.size());
-  return (forced || far_field_may_pay(options_.accuracy.samples, sources, caps ? 1.0 : kTriangleCost)) &&
-         far_field() != nullptr;
-}
+bool ScaledMesh::has_far_field() const { return choice_.far_field_may_pay() && far_field() != nullptr; }
 
 // Where nobody knows how many samples certificates leave, they are counted until there is a tree: so many take about as
 // long as that.
@@ -171,22 +141,6 @@ const FarField* ScaledMesh::far_field_for(std::size_t samples) const {
     return nullptr;
   }
   return far_field_without_waiting();
-}
-
-// Whether there is one or not, which is not known before it is built.
-double ScaledMesh::doubt_of_far_field() const {
-  const bool wanted = options_.summation == Summation::kCheapest || options_.summation == Summation::kFarField;
-  if (!wanted || !is_in_scale_ || !(tolerance() >= kLeastTolerance)) return 0.0;
-  return FarField::doubt(kFarShare * tolerance(), most_sources());
-}
-
-double ScaledMesh::doubt_of_blocks() const {
-  return has_blocks() ? LatticeBlocks::doubt(tolerance(), most_sources()) : 0.0;
-}
-
-// A loop of n edges has n - 2 caps.
-double ScaledMesh::most_sources() const {
-  return counts_crossings() ? boundary_.total_multiplicity() : static_cast<double>(mesh_.triangles.size());
 }
 
 void ScaledMesh::prepare_points() const {
@@ -230,7 +184,7 @@ void ScaledMesh::set_values(PointBlocks::Sums& sums, SampleTile& samples, std::s
     const std::array<std::int64_t, kTile> caps = blocks_of_points()->caps.of(samples);
     for (std::size_t i = 0; i < values.size(); ++i) values[i] += static_cast<double>(crossings[i] - caps[i]);
   }
-  if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values, doubt_of_blocks());
+  if (settling == Settling::kDone) set_again_near_half_integers(samples, crossings, values, choice_.doubt_of_blocks());
 }
 
 void ScaledMesh::set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings,

@@ -21,6 +21,7 @@
 #include "core/crossings/row.h"
 #include "core/crossings/slab_order.h"
 #include "core/data/triangle_mesh.h"
+#include "core/evaluation/summation_choice.h"
 #include "core/evaluation/winding_number.h"
 #include "core/exact/scale.h"
 #include "core/far/cap_crossings.h"
@@ -48,7 +49,7 @@ struct BlocksOfPoints {
 class ScaledMesh {
  public:
   ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const EvaluatorOptions& options);
-  ScaledMesh(const ScaledMesh&) = delete;  // rays_ refers to mesh_, term_ and far_ to boundary_
+  ScaledMesh(const ScaledMesh&) = delete;  // rays_ refers to mesh_; term_, choice_ and far_ to boundary_
   ScaledMesh& operator=(const ScaledMesh&) = delete;
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
@@ -93,44 +94,21 @@ class ScaledMesh {
 
   // Whether values depend on how many triangles a ray crosses.
   [[nodiscard]] bool counts_crossings() const { return !term_ || term_->counts_crossings(); }
-  // What the direct sum takes at a sample (costs.h).
-  [[nodiscard]] double direct_cost() const;
+  // Which ways to sum are open, and which of them pay.
+  [[nodiscard]] const SummationChoice& choice() const { return choice_; }
 
   // Whether what is far acts together. Samples that are near to each other in space are then cheaper together.
   [[nodiscard]] bool has_far_field() const;
   // None where the direct sum is as good at a sample. Built when first needed.
   [[nodiscard]] const FarField* far_field() const;
 
-  // That of the accuracy, where it is of use: more would not be settled at half-integers.
-  [[nodiscard]] double tolerance() const { return std::min(options_.accuracy.tolerance, 0x1p-4); }
   // No value is off by more, but for its last rounding (BoundaryTerm::doubt()).
   [[nodiscard]] double doubt() const {
-    return term_ ? std::max({term_->doubt(), doubt_of_far_field(), doubt_of_blocks()}) : 0.0;
+    return term_ ? std::max({term_->doubt(), choice_.doubt_of_far_field(), choice_.doubt_of_blocks()}) : 0.0;
   }
 
   // Likewise of set_direct_values(). 0: the mesh is closed.
   [[nodiscard]] double doubt_of_direct_values() const { return term_ ? term_->doubt() : 0.0; }
-
-  // Triangles that a far field sums, at most.
-  [[nodiscard]] double most_sources() const;
-
-  // Whether blocks may be evaluated: not with a tolerance too small for them, nor with sources so many that no value is
-  // sure to half a turn.
-  [[nodiscard]] bool has_blocks() const {
-    return term_ && is_in_scale_ && options_.accuracy.tolerance >= kLeastToleranceOfBlocks &&
-           most_sources() <= static_cast<double>(SharedEdges::kMostTriangles) &&
-           LatticeBlocks::doubt(tolerance(), most_sources()) <= Boundary::kMostDoubt;
-  }
-
-  // Whether sides of rules are told by rough sums over the tree of blocks(), if these are sound. Few samples of a soup
-  // are sooner told by its own far field.
-  [[nodiscard]] bool has_rough_sums() const {
-    constexpr double kFewSamples = 0x1p16;
-    return has_blocks() && (counts_crossings() || options_.accuracy.samples > kFewSamples);
-  }
-
-  // No value from blocks() is off by more.
-  [[nodiscard]] double doubt_of_blocks() const;
 
   enum class Settling { kDone, kLeft };
 
@@ -162,7 +140,6 @@ class ScaledMesh {
   }
 
  private:
-  [[nodiscard]] double doubt_of_far_field() const;
   // The far field for so many more samples; null: they are summed directly.
   [[nodiscard]] const FarField* far_field_for(std::size_t samples) const;
   [[nodiscard]] std::unique_ptr<const FarField> make_far_field() const;
@@ -182,6 +159,7 @@ class ScaledMesh {
   bool is_in_scale_;
   Boundary boundary_;
   std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
+  SummationChoice choice_;                    // refers to boundary_
   mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
   mutable std::atomic_flag far_is_taken_;
   BuiltOnce<RayCaster> rays_;

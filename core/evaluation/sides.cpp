@@ -54,7 +54,7 @@ Tally sides_by_values(const ScaledMeshes& meshes, const ScaledMesh& mesh, const 
 bool takes_values(const ScaledMesh& mesh, const LatticeBlock& block) {
   constexpr double kWorthCaps = 0x1p20;  // edges at samples take about as long as caps and their tree
   if (!mesh.is_in_scale()) return true;
-  if (!mesh.counts_crossings()) return !mesh.has_rough_sums() || !mesh.blocks().are_sound;
+  if (!mesh.counts_crossings()) return !mesh.choice().has_rough_sums() || !mesh.blocks().are_sound;
   return static_cast<double>(block.size()) * static_cast<double>(mesh.boundary().exterior_edges()) <= kWorthCaps;
 }
 

@@ -54,7 +54,7 @@ double WindingNumberEvaluator::doubt() const { return implementation_->scaled().
 double WindingNumberEvaluator::accuracy() const {
   constexpr double u = 0x1p-53;
   const ScaledMesh& mesh = implementation_->scaled();
-  return std::max({kLeastTolerance, mesh.tolerance(), u * mesh.boundary().total_multiplicity()});
+  return std::max({kLeastTolerance, mesh.choice().tolerance(), u * mesh.boundary().total_multiplicity()});
 }
 
 // Each face is scanned once, and each sample written once.
@@ -63,7 +63,7 @@ WindingNumberEvaluator::Estimate WindingNumberEvaluator::estimated_seconds(const
   constexpr double kMany = 1 << 17;  // sources
   const DefaultFloatingPoint guard;
   const ScaledMesh& mesh = implementation_->scaled();
-  const bool many = !mesh.is_closed() && mesh.most_sources() > kMany;
+  const bool many = !mesh.is_closed() && mesh.choice().most_sources() > kMany;
   const double once = kPerFace * static_cast<double>(mesh.mesh().triangles.size());
   return {once + kPerSample * lattice.samples() + boundary_seconds(mesh, lattice, !many), many};
 }

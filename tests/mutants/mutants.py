@@ -787,7 +787,7 @@ MUTANTS = [
     Mutant("rows_of_a_tile_alike", "each row of a tile has its own projections", [
         ("core/boundary/edge_lanes-inl.h", "projections.row = i / 8;", "projections.row = i / 16;")]),
     Mutant("point_values_not_settled", "a value of blocks of points that may be a half-integer is evaluated again", [
-        ("core/evaluation/scaled_mesh.cpp", "values, doubt_of_blocks());", "values, -1.0);")]),
+        ("core/evaluation/scaled_mesh.cpp", "values, choice_.doubt_of_blocks());", "values, -1.0);")]),
     Mutant("rims_are_pulled", "the rim of a fin, and the border of a hole, stay where planes do not hold them", [
         ("core/surface/patch_merger.cpp", "if (rim.empty()) return true;", "return true;")]),
     Mutant("sharpened_off_the_mesh", "strips are pulled together only where the mesh has an edge", [

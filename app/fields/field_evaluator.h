@@ -29,9 +29,10 @@ class FieldEvaluator {
 
   [[nodiscard]] const WindingNumberEvaluator& winding_number() const { return winding_number_; }
 
-  // What the winding numbers that it tells are off by at most, turns: 0 of closed meshes, and where it tells none.
-  [[nodiscard]] double accuracy() const {
-    return rule_ || winding_number_.exterior_edges() == 0 ? 0.0 : winding_number_.accuracy();
+  // What the winding numbers that it tells are expected to be off by at most, turns: 0 of closed meshes, and where it
+  // tells none.
+  [[nodiscard]] double expected_error() const {
+    return rule_ || winding_number_.exterior_edges() == 0 ? 0.0 : winding_number_.expected_error();
   }
 
   // The closed surface that solid distances are to: needed before evaluate() where they are wanted.

@@ -229,7 +229,7 @@ double accuracy_of(const WindingNumberEvaluator& evaluator, const TriangleMesh& 
   constexpr double u = 0x1p-53;
   const double most = 3 * u * static_cast<double>(mesh.triangles.size());
   const double asked = tolerance >= kLeastTolerance ? tolerance : 1e-10;
-  return std::clamp(evaluator.accuracy(), asked, std::max(asked, most));
+  return std::clamp(evaluator.expected_error(), asked, std::max(asked, most));
 }
 
 }  // namespace

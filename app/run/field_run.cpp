@@ -40,7 +40,7 @@ FieldRun::FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, d
       draw_(field.verify) {
   timed(run.report.seconds.prepare, [&] { prepare_engine(evaluator_.winding_number(), field, run.limits()); });
   if (field.labels_only()) return;
-  if (const auto warning = tolerance_not_kept(field.tolerance, evaluator_.accuracy())) run.warn(*warning);
+  if (const auto warning = tolerance_not_kept(field.tolerance, evaluator_.expected_error())) run.warn(*warning);
 }
 
 void FieldRun::set_solid(TriangleMesh surface) {
@@ -93,13 +93,13 @@ void FieldRun::look_for_inside() {
 void FieldRun::finish(double band_width) {
   const WindingNumberEvaluator& evaluator = evaluator_.winding_number();
   run_.report.terms += evaluator.terms();
-  const double bound = field_.diagnostics ? largest_bound_ : evaluator_.accuracy();
+  const double bound = field_.diagnostics ? largest_bound_ : evaluator_.expected_error();
   run_.report.largest_error_bound = std::max(run_.report.largest_error_bound, bound);
   if (field_.verify == 0) return;
   run_.report.add_verification(timed(run_.report.seconds.verify, [&] {
     // Lattices and points may have different engines, each within the tolerance.
     const bool may_differ = of_lattice_ && evaluator.exterior_edges() > 0 && field_.tolerance > 0.0;
-    const double within = may_differ ? 2 * evaluator.accuracy() : 0.0;
+    const double within = may_differ ? 2 * evaluator.expected_error() : 0.0;
     return raycone::verify(run_.report.mesh, {original_, &solid_}, evaluator_, field_, band_width, draw_.samples(),
                            within);
   }));

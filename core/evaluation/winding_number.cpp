@@ -51,7 +51,7 @@ double tolerance_for_sides(const Rule& rule) { return thresholds_to_settle(rule)
 
 double WindingNumberEvaluator::doubt() const { return implementation_->scaled().doubt(); }
 
-double WindingNumberEvaluator::accuracy() const {
+double WindingNumberEvaluator::expected_error() const {
   constexpr double u = 0x1p-53;
   const ScaledMesh& mesh = implementation_->scaled();
   return std::max({kLeastTolerance, mesh.choice().tolerance(), u * mesh.boundary().total_multiplicity()});

@@ -159,7 +159,7 @@ class WindingNumberEvaluator {
   // can do no better. What a tolerance leaves out is within it. What sums round beside it is below doubt(), and
   // measured far below; docs/method.md, "What is guaranteed", says what of this is proved. Diagnostics bound each
   // value.
-  [[nodiscard]] double accuracy() const;
+  [[nodiscard]] double expected_error() const;
 
   // No value is off by more, turns, but for its last rounding (docs/method.md, "What is guaranteed"). 0 for closed
   // meshes, whose values are exact.

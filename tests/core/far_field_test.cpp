@@ -76,7 +76,7 @@ TEST(FarField, KeepsTheTolerance) {
       }
       EXPECT_LE(largest, tolerance);
       EXPECT_GT(largest, 1e-15);
-      EXPECT_LE(tolerance, evaluator.accuracy());
+      EXPECT_LE(tolerance, evaluator.expected_error());
     }
   }
 }

@@ -53,8 +53,8 @@ void multiply_all(std::span<const SolidTriangle> all, const SampleTile& samples,
     const auto all_lanes = hn::FirstN(d, hn::Lanes(d));
     for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
       for (std::size_t begin = 0; begin < triangles.size(); begin += kFactorsPerBlock) {
-        multiply_block(products, triangles, rays, samples, i, begin,
-                       std::min(begin + kFactorsPerBlock, triangles.size()), all_lanes);
+        const std::size_t end = std::min(begin + kFactorsPerBlock, triangles.size());
+        multiply_block(products, TriangleBlock{triangles, begin, end, samples, i}, rays, all_lanes);
       }
     }
   }

@@ -109,11 +109,18 @@ HWY_INLINE TriangleFactors factors_of(const SolidTriangle& t, const ProjectedTri
                                  hn::Add(nx, p.side), hn::Add(hn::Abs(nx), p.terms));
 }
 
-// Of triangle n of the rays, at the samples from i on.
+// Triangles [begin, end), and the samples from i on whose products are multiplied by their factors.
+struct TriangleBlock {
+  std::span<const SolidTriangle> triangles;
+  std::size_t begin, end;
+  const SampleTile& samples;
+  std::size_t i;
+};
+
+// Of triangle n of the block, which is that of the rays.
 template <class Rays>
-HWY_INLINE TriangleFactors factors_at(const Rays& rays, const SolidTriangle& t, std::size_t n,
-                                      const SampleTile& samples, std::size_t i) {
-  return factors_of(t, rays.projected(n, i), hn::Load(d, &samples.x[i]));
+HWY_INLINE TriangleFactors factors_at(const Rays& rays, const TriangleBlock& block, std::size_t n) {
+  return factors_of(block.triangles[n], rays.projected(n, block.i), hn::Load(d, &block.samples.x[block.i]));
 }
 
 // Multiplies by the triangle's factor as its crossing of the ray and the factors of its three edges give it, with every
@@ -127,63 +134,61 @@ void multiply_by_edges(ProductTile& products, std::size_t i, const SolidTriangle
   }
 }
 
-// What multiply_block() does, factor by factor, for those of the samples from i on whose bit in `trusted` is not set.
+// What multiply_block() does, factor by factor, for the samples whose bit in `trusted` is not set. The block is a copy:
+// one that is referred to from here would be kept in memory where multiply_block() is fast.
 template <class Rays>
-HWY_NOINLINE void multiply_carefully(ProductTile& products, std::span<const SolidTriangle> triangles, Rays& rays,
-                                     const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
+HWY_NOINLINE void multiply_carefully(ProductTile& products, const TriangleBlock block, Rays& rays,
                                      std::uint64_t trusted) {
-  for (std::size_t n = begin; n < end; ++n) {
-    const TriangleFactors factors = factors_at(rays, triangles[n], n, samples, i);
+  const SampleTile& samples = block.samples;
+  for (std::size_t n = block.begin; n < block.end; ++n) {
+    const TriangleFactors factors = factors_at(rays, block, n);
     const Lanes magnitude = hn::Add(hn::Abs(factors.re), hn::Abs(factors.im));
     const std::uint64_t plain = bits_of(hn::And(factors.trusted, hn::Lt(magnitude, hn::Set(d, kLargestFactor))));
     alignas(64) std::array<double, 8> re, im;
     hn::Store(factors.re, d, re.data());
     hn::Store(factors.im, d, im.data());
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-      const std::size_t sample = i + lane;
+      const std::size_t sample = block.i + lane;
       if ((trusted >> lane) & 1U) continue;
       if ((plain >> lane) & 1U) {
         multiply_one(products, sample, re[lane], im[lane]);
       } else {
-        multiply_by_edges(products, sample, triangles[n], {samples.x[sample], samples.y[sample], samples.z[sample]});
+        multiply_by_edges(products, sample, block.triangles[n], samples.query(sample));
       }
     }
   }
 }
 
-// Stores z, the products of those of the samples from i on that are `active` times the factors of triangles [begin,
-// end): of the lanes that are trusted and sound. Multiplies the others factor by factor.
+// Stores z, the products of those samples that are `active` times the factors of the block: of the lanes that are
+// trusted and sound. Multiplies the others factor by factor.
 template <class Rays>
-HWY_INLINE void finish_block(ProductTile& products, std::span<const SolidTriangle> triangles, Rays& rays,
-                             const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
-                             LaneMask active, const ProductLanes& z, LaneMask trusted) {
+HWY_INLINE void finish_block(ProductTile& products, const TriangleBlock& block, Rays& rays, LaneMask active,
+                             const ProductLanes& z, LaneMask trusted) {
   trusted = hn::And(trusted, is_sound(z));
   const auto done = hn::Or(trusted, hn::Not(active));
   if (HWY_LIKELY(hn::AllTrue(d, done))) {
-    const ProductLanes before = load(products, i);
+    const ProductLanes before = load(products, block.i);
     store(scaled({hn::IfThenElse(active, z.re, before.re), hn::IfThenElse(active, z.im, before.im),
                   hn::IfThenElse(active, z.passages, before.passages)}),
-          products, i);
+          products, block.i);
   } else {
-    multiply_carefully(products, triangles, rays, samples, i, begin, end, bits_of(done));
-    store_trusted(z, trusted, products, i);
+    multiply_carefully(products, block, rays, bits_of(done));
+    store_trusted(z, trusted, products, block.i);
   }
 }
 
-// Multiplies the factors of triangles [begin, end) onto the products of those of the samples from i on that are
-// `active`. `kCertain`: it is known beforehand that all factors are trusted.
+// Multiplies the factors of a block onto the products of those of its samples that are `active`. `kCertain`: it is
+// known beforehand that all factors are trusted.
 template <bool kCertain = false, class Rays>
-HWY_INLINE void multiply_block(ProductTile& products, std::span<const SolidTriangle> triangles, Rays& rays,
-                               const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
-                               LaneMask active) {
-  ProductLanes z = load(products, i);
+HWY_INLINE void multiply_block(ProductTile& products, const TriangleBlock& block, Rays& rays, LaneMask active) {
+  ProductLanes z = load(products, block.i);
   auto trusted = active;
-  for (std::size_t n = begin; n < end; ++n) {
-    const TriangleFactors factors = factors_at(rays, triangles[n], n, samples, i);
+  for (std::size_t n = block.begin; n < block.end; ++n) {
+    const TriangleFactors factors = factors_at(rays, block, n);
     if constexpr (!kCertain) trusted = hn::And(trusted, factors.trusted);
     z = times(z, factors.re, factors.im, hn::CopySignToAbs(hn::Set(d, 1.0), factors.im));
   }
-  finish_block(products, triangles, rays, samples, i, begin, end, active, z, trusted);
+  finish_block(products, block, rays, active, z, trusted);
 }
 
 }  // namespace

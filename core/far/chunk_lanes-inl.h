@@ -185,14 +185,12 @@ class TrianglesOfRows {
 };
 
 template <Care kCare>
-HWY_INLINE TriangleFactors factors_at(TrianglesOfChunk<kCare>& triangles, const SolidTriangle&, std::size_t n,
-                                      const SampleTile&, std::size_t) {
+HWY_INLINE TriangleFactors factors_at(TrianglesOfChunk<kCare>& triangles, const TriangleBlock&, std::size_t n) {
   triangles.see(n);
   return triangles.factors(n);
 }
 template <Care kCare>
-HWY_INLINE TriangleFactors factors_at(TrianglesOfRows<kCare>& triangles, const SolidTriangle&, std::size_t n,
-                                      const SampleTile&, std::size_t) {
+HWY_INLINE TriangleFactors factors_at(TrianglesOfRows<kCare>& triangles, const TriangleBlock&, std::size_t n) {
   triangles.see(n);
   return triangles.factors(n);
 }
@@ -201,19 +199,17 @@ HWY_INLINE TriangleFactors factors_at(TrianglesOfRows<kCare>& triangles, const S
 // (looks_small_from()), so those of a block sum to less than pi: to the argument of the block's product, which is all
 // that is seen to pass the real axis.
 template <class Views>
-HWY_INLINE void multiply_small_block(ProductTile& products, std::span<const SolidTriangle> triangles, Views& views,
-                                     const SampleTile& samples, std::size_t i, std::size_t begin, std::size_t end,
-                                     LaneMask active) {
+HWY_INLINE void multiply_small_block(ProductTile& products, const TriangleBlock& block, Views& views, LaneMask active) {
   static_assert(kFactorsPerBlock * 0.28 < 3.14);
-  auto [re, im, trusted] = factors_at(views, triangles[begin], begin, samples, i);
-  for (std::size_t n = begin + 1; n < end; ++n) {
-    const TriangleFactors f = factors_at(views, triangles[n], n, samples, i);
+  auto [re, im, trusted] = factors_at(views, block, block.begin);
+  for (std::size_t n = block.begin + 1; n < block.end; ++n) {
+    const TriangleFactors f = factors_at(views, block, n);
     const Lanes next = hn::Sub(hn::Mul(re, f.re), hn::Mul(im, f.im));
     im = hn::Add(hn::Mul(re, f.im), hn::Mul(im, f.re));
     re = next;
   }
-  const ProductLanes z = times(load(products, i), re, im, hn::CopySignToAbs(hn::Set(d, 1.0), im));
-  finish_block(products, triangles, views, samples, i, begin, end, active, z, active);
+  const ProductLanes z = times(load(products, block.i), re, im, hn::CopySignToAbs(hn::Set(d, 1.0), im));
+  finish_block(products, block, views, active, z, active);
 }
 
 // How triangles of a chunk are multiplied.
@@ -229,16 +225,17 @@ HWY_INLINE void multiply_chunk(ProductTile& products, const SharedCorners::Chunk
                                const SampleTile& samples, std::size_t i, LaneMask active, Looks looks) {
   views.begin(i);
   for (std::size_t begin = 0; begin < chunk.triangles.size(); begin += kFactorsPerBlock) {
-    const std::size_t end = std::min(begin + kFactorsPerBlock, chunk.triangles.size());
+    const TriangleBlock block{chunk.triangles, begin, std::min(begin + kFactorsPerBlock, chunk.triangles.size()),
+                              samples, i};
     switch (looks) {
       case Looks::kLarge:
-        multiply_block(products, chunk.triangles, views, samples, i, begin, end, active);
+        multiply_block(products, block, views, active);
         break;
       case Looks::kSmall:
-        multiply_block<true>(products, chunk.triangles, views, samples, i, begin, end, active);
+        multiply_block<true>(products, block, views, active);
         break;
       case Looks::kSmallFromAll:
-        multiply_small_block(products, chunk.triangles, views, samples, i, begin, end, active);
+        multiply_small_block(products, block, views, active);
         break;
     }
   }

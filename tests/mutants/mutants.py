@@ -809,8 +809,8 @@ MUTANTS = [
     Mutant("sources_of_parallel_planes", "a face that is far from its source's plane gets another source", [
         ("core/surface/face_sources.cpp", "*corner - point)) <= off_)", "*corner - point)) <= 1e9 * off_)")]),
     Mutant("small_triangles_without_turns", "products of eight small triangles are counted as they turn", [
-        ("core/far/chunk_lanes-inl.h", "times(load(products, i), re, im, hn::CopySignToAbs(hn::Set(d, 1.0), im))",
-         "times(load(products, i), re, im, hn::Zero(d))")]),
+        ("core/far/chunk_lanes-inl.h", "times(load(products, block.i), re, im, hn::CopySignToAbs(hn::Set(d, 1.0), im))",
+         "times(load(products, block.i), re, im, hn::Zero(d))")]),
     Mutant("small_triangles_too_near", "a triangle looks small beyond its longest side only", [
         ("core/far/shared_corners.cpp", "return square * (1 + 0x1p-40);", "return 0.9 * square;")]),
     Mutant("small_nodes_too_near", "triangles of a node look small from beyond its radius and their longest side only", [

@@ -31,7 +31,7 @@ void add_product(const ChainGroup& group, const ProductTile& products, std::span
 }  // namespace
 
 Cone::Cone(const Boundary& boundary, SimdLevel level)
-    : CompleteTerm(boundary, boundary.total_multiplicity()), multiply_chains_(cone_kernel(level)) {}
+    : CompleteEngine(boundary, boundary.total_multiplicity()), multiply_chains_(cone_kernel(level)) {}
 
 void Cone::winding_numbers(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> w) const {
   samples.fill_up();

@@ -6,13 +6,13 @@
 // "Fast and Exact Winding Numbers", eq. 5, with the apex of Martens, Trettner, Bessmeltsev 2026).
 #pragma once
 
-#include "core/boundary/boundary_term.h"
 #include "core/boundary/cone_kernel.h"
+#include "core/boundary/winding_number_engine.h"
 
 namespace raycone {
 
 // w = n - the cone's winding number. Rounding errors of some u per edge.
-class Cone final : public CompleteTerm {
+class Cone final : public CompleteEngine {
  public:
   // `boundary` must outlive this.
   Cone(const Boundary& boundary, SimdLevel level);

@@ -18,7 +18,7 @@ struct SolidTriangle {
 
 // How far the argument of a factor may be off. Crossings are exact all the same.
 enum class Care {
-  kFull,   // no more than doubt_of_factors() says (core/boundary/boundary_term.h)
+  kFull,   // no more than doubt_of_factors() says (core/boundary/winding_number_engine.h)
   kRough,  // kRoughness times that, so that next to long edges, too, few factors are taken with care
 };
 inline constexpr double kRoughness = 0x1p10;

@@ -111,7 +111,7 @@ SolidAngles::SolidAngles(const TriangleMesh& mesh, const Boundary& boundary, Sim
     : SolidAngles(solid_faces(mesh), boundary, level) {}
 
 SolidAngles::SolidAngles(SolidFaces faces, const Boundary& boundary, SimdLevel level)
-    : CompleteTerm(boundary, 3 * static_cast<double>(faces.triangles.size())),
+    : CompleteEngine(boundary, 3 * static_cast<double>(faces.triangles.size())),
       multiply_(solid_angle_kernel(level)),
       faces_(std::move(faces)) {}
 

@@ -8,8 +8,8 @@
 
 #include <vector>
 
-#include "core/boundary/boundary_term.h"
 #include "core/boundary/solid_angle_kernel.h"
+#include "core/boundary/winding_number_engine.h"
 #include "core/data/triangle_mesh.h"
 
 namespace raycone {
@@ -24,7 +24,7 @@ struct SolidFaces {
 [[nodiscard]] SolidFaces solid_faces(const TriangleMesh& mesh);
 
 // Rounding errors of some u per triangle.
-class SolidAngles final : public CompleteTerm {
+class SolidAngles final : public CompleteEngine {
  public:
   // `boundary`: of the mesh; it must outlive this. Needs DefaultFloatingPoint.
   SolidAngles(const TriangleMesh& mesh, const Boundary& boundary, SimdLevel level);

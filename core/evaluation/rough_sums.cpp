@@ -5,7 +5,7 @@
 #include <limits>
 #include <span>
 
-#include "core/boundary/boundary_term.h"
+#include "core/boundary/winding_number_engine.h"
 #include "core/evaluation/sums_round.h"
 
 namespace raycone {

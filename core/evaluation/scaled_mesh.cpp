@@ -16,8 +16,8 @@ TriangleMesh in_scale(TriangleMesh mesh, const PowerOfTwo& scale) {
 }
 
 // The engine that is asked for.
-std::unique_ptr<const BoundaryTerm> boundary_term(const TriangleMesh& mesh, const Boundary& boundary, bool in_scale,
-                                                  const EvaluatorOptions& options) {
+std::unique_ptr<const WindingNumberEngine> direct_engine(const TriangleMesh& mesh, const Boundary& boundary,
+                                                         bool in_scale, const EvaluatorOptions& options) {
   if (boundary.exterior_edges() == 0) return nullptr;
   const bool cheapest = options.summation != Summation::kCone && options.summation != Summation::kTriangles;
   const bool triangles_are_cheaper =
@@ -38,7 +38,7 @@ ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const Evaluat
       mesh_(in_scale(std::move(mesh), scale)),
       is_in_scale_(scale.exponent() != 0 || largest_exponent(mesh_) <= 0),
       boundary_(options.edges ? Boundary(mesh_, *options.edges) : Boundary(mesh_)),
-      term_(boundary_term(mesh_, boundary_, is_in_scale_, options)),
+      direct_(direct_engine(mesh_, boundary_, is_in_scale_, options)),
       choice_(options, {boundary_, mesh_.triangles.size(), counts_crossings(), is_in_scale_}) {
   options_.edges = nullptr;
 }
@@ -160,7 +160,7 @@ TriangleCrossing ScaledMesh::crossing(std::uint32_t triangle, const Row& row) co
 
 void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,
                             Settling settling, std::span<const std::int64_t> of_closed) const {
-  if (!term_) {
+  if (!direct_) {
     std::copy(crossings.begin(), crossings.end(), values.begin());
     return;
   }
@@ -189,12 +189,12 @@ void ScaledMesh::set_values(PointBlocks::Sums& sums, SampleTile& samples, std::s
 
 void ScaledMesh::set_direct_values(SampleTile& samples, std::span<const std::int64_t> crossings,
                                    std::span<double> values, Settling settling) const {
-  term_->winding_numbers(samples, crossings, values);
-  const std::size_t terms = term_->counts_crossings() ? boundary_.exterior_edges() : mesh_.triangles.size();
+  direct_->winding_numbers(samples, crossings, values);
+  const std::size_t terms = direct_->counts_crossings() ? boundary_.exterior_edges() : mesh_.triangles.size();
   direct_terms_.fetch_add(values.size() * terms, std::memory_order_relaxed);
   if (settling == Settling::kLeft) return;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (distance_to_half_integer(values[i]) > term_->doubt()) continue;
+    if (distance_to_half_integer(values[i]) > direct_->doubt()) continue;
     values[i] = boundary_.settle(samples.query(i), values[i], std::floor(values[i]) + 0.5);
   }
 }

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "core/boundary/boundary.h"
-#include "core/boundary/boundary_term.h"
 #include "core/boundary/change_bound.h"
 #include "core/boundary/sample_tile.h"
+#include "core/boundary/winding_number_engine.h"
 #include "core/crossings/crossings.h"
 #include "core/crossings/projected_grid.h"
 #include "core/crossings/ray_caster.h"
@@ -49,7 +49,7 @@ struct BlocksOfPoints {
 class ScaledMesh {
  public:
   ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const EvaluatorOptions& options);
-  ScaledMesh(const ScaledMesh&) = delete;  // rays_ refers to mesh_; term_, choice_ and far_ to boundary_
+  ScaledMesh(const ScaledMesh&) = delete;  // rays_ refers to mesh_; direct_, choice_ and far_ to boundary_
   ScaledMesh& operator=(const ScaledMesh&) = delete;
 
   [[nodiscard]] const TriangleMesh& mesh() const { return mesh_; }
@@ -93,7 +93,7 @@ class ScaledMesh {
   [[nodiscard]] TriangleCrossing crossing(std::uint32_t triangle, const Row& row) const;
 
   // Whether values depend on how many triangles a ray crosses.
-  [[nodiscard]] bool counts_crossings() const { return !term_ || term_->counts_crossings(); }
+  [[nodiscard]] bool counts_crossings() const { return !direct_ || direct_->counts_crossings(); }
   // Which ways to sum are open, and which of them pay.
   [[nodiscard]] const SummationChoice& choice() const { return choice_; }
 
@@ -102,13 +102,13 @@ class ScaledMesh {
   // None where the direct sum is as good at a sample. Built when first needed.
   [[nodiscard]] const FarField* far_field() const;
 
-  // No value is off by more, but for its last rounding (BoundaryTerm::doubt()).
+  // No value is off by more, but for its last rounding (WindingNumberEngine::doubt()).
   [[nodiscard]] double doubt() const {
-    return term_ ? std::max({term_->doubt(), choice_.doubt_of_far_field(), choice_.doubt_of_blocks()}) : 0.0;
+    return direct_ ? std::max({direct_->doubt(), choice_.doubt_of_far_field(), choice_.doubt_of_blocks()}) : 0.0;
   }
 
   // Likewise of set_direct_values(). 0: the mesh is closed.
-  [[nodiscard]] double doubt_of_direct_values() const { return term_ ? term_->doubt() : 0.0; }
+  [[nodiscard]] double doubt_of_direct_values() const { return direct_ ? direct_->doubt() : 0.0; }
 
   enum class Settling { kDone, kLeft };
 
@@ -126,7 +126,7 @@ class ScaledMesh {
                   std::span<double> values, Settling settling) const;
 
   [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const {
-    return term_ ? term_->error_bound(q, w, crossings) : 0.0;
+    return direct_ ? direct_->error_bound(q, w, crossings) : 0.0;
   }
 
   // Not while an evaluation runs.
@@ -158,8 +158,8 @@ class ScaledMesh {
   TriangleMesh mesh_;
   bool is_in_scale_;
   Boundary boundary_;
-  std::unique_ptr<const BoundaryTerm> term_;  // none where the mesh is closed
-  SummationChoice choice_;                    // refers to boundary_
+  std::unique_ptr<const WindingNumberEngine> direct_;  // none where the mesh is closed
+  SummationChoice choice_;                             // refers to boundary_
   mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
   mutable std::atomic_flag far_is_taken_;
   BuiltOnce<RayCaster> rays_;

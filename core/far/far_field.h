@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/boundary/boundary_term.h"
 #include "core/boundary/sample_tile.h"
+#include "core/boundary/winding_number_engine.h"
 #include "core/data/triangle_mesh.h"
 #include "core/far/cap_crossings.h"
 #include "core/far/far_kernel.h"
@@ -24,7 +24,7 @@ namespace raycone {
 // there are many sources, as a far field saves more of them.
 [[nodiscard]] bool far_field_may_pay(double samples, double sources, double direct);
 
-class FarField final : public BoundaryTerm {
+class FarField final : public WindingNumberEngine {
  public:
   // Of a mesh in scale: coordinates of at most 1. The far field is off by at most `tolerance` turns, positive, what it
   // rounds included. `boundary`: of the mesh; `caps`: of the boundary, null where the triangles of the mesh are the

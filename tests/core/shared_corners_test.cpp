@@ -6,8 +6,8 @@
 #include <array>
 #include <vector>
 
-#include "core/boundary/boundary_term.h"
 #include "core/boundary/solid_angles.h"
+#include "core/boundary/winding_number_engine.h"
 #include "core/machine/floating_point.h"
 #include "tests/support/differences.h"
 #include "tests/support/shapes.h"

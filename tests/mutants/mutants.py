@@ -199,7 +199,7 @@ MUTANTS = [
         ("core/evaluation/scaled_mesh.cpp",
          "    values[i] = boundary_.settle(samples.query(i), values[i], std::floor(values[i]) + 0.5);\n", "")]),
     Mutant("doubt_too_small", "a value within its bound of a half-integer is looked at again", [
-        ("core/boundary/boundary_term.cpp", "kDoubtPerEdge = 0x1p-41;", "kDoubtPerEdge = 0x1p-62;")]),
+        ("core/boundary/winding_number_engine.cpp", "kDoubtPerEdge = 0x1p-41;", "kDoubtPerEdge = 0x1p-62;")]),
     Mutant("rim_is_plane", "on an exterior edge w is no multiple of 1/2", [
         ("core/boundary/boundary.cpp", "if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;", "")]),
     Mutant("all_edges_in_one_plane", "one exterior edge out of the plane of the others counts", [
@@ -282,9 +282,9 @@ MUTANTS = [
     Mutant("loops_take_part_in_others", "who waits for a loop within a loop takes no part in the outer one", [
         ("core/machine/threads.cpp", "isolated([&] { run_loop(count, grain, body); });", "run_loop(count, grain, body);")]),
     Mutant("error_bound_too_small", "the error bound is rigorous", [
-        ("core/boundary/boundary_term.cpp", "bound * (1 + 8 * u)", "bound * 0.001L")]),
+        ("core/boundary/winding_number_engine.cpp", "bound * (1 + 8 * u)", "bound * 0.001L")]),
     Mutant("error_bound_of_the_sum_only", "the error bound holds for the value, not only for the wider sum", [
-        ("core/boundary/boundary_term.cpp", "bound = std::abs(w - w2) + enclosure.bound", "bound = enclosure.bound")]),
+        ("core/boundary/winding_number_engine.cpp", "bound = std::abs(w - w2) + enclosure.bound", "bound = enclosure.bound")]),
 
     # --- Points that are drawn ---
     Mutant("area_by_rounding", "areas are right for triangles of every shape and size", [

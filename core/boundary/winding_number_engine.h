@@ -1,5 +1,5 @@
-// The boundary term: what there is between the winding number w and the number n of triangles that a ray crosses, which
-// is exact. Every engine that computes it has this interface.
+// The interface of all engines of winding numbers. What they differ in is the boundary term: what there is between the
+// winding number w and the number n of triangles that a ray crosses, which is exact.
 #pragma once
 
 #include <cstdint>
@@ -12,18 +12,18 @@ namespace raycone {
 
 // An engine: the winding numbers of one open mesh, tile by tile. It promises one of two things:
 //
-// - Complete engines (CompleteTerm) sum up all that there is, in an order that the mesh alone gives. A value is off by
-//   rounding, and by nothing else.
+// - Complete engines (CompleteEngine) sum up all that there is, in an order that the mesh alone gives. A value is off
+//   by rounding, and by nothing else.
 // - Bounded engines leave out what they can bound. That bound is part of doubt() and of error_bound().
 //
 // Both give a query the same bits in any tile, on any thread, at any SIMD level, and w on the surface and at ties is
 // that of the perturbed query (core/exact/predicates.h). Calls may run concurrently; they need DefaultFloatingPoint.
-class BoundaryTerm {
+class WindingNumberEngine {
  public:
-  BoundaryTerm() = default;
-  BoundaryTerm(const BoundaryTerm&) = delete;
-  BoundaryTerm& operator=(const BoundaryTerm&) = delete;
-  virtual ~BoundaryTerm() = default;
+  WindingNumberEngine() = default;
+  WindingNumberEngine(const WindingNumberEngine&) = delete;
+  WindingNumberEngine& operator=(const WindingNumberEngine&) = delete;
+  virtual ~WindingNumberEngine() = default;
 
   // Whether values depend on n. Where not, nobody needs to count crossings.
   [[nodiscard]] virtual bool counts_crossings() const = 0;
@@ -53,7 +53,7 @@ class BoundaryTerm {
 
 // What complete engines have in common: each factor rounds by a bounded number of turns, and the enclosure of the cone
 // in extended precision tells how far a value is off.
-class CompleteTerm : public BoundaryTerm {
+class CompleteEngine : public WindingNumberEngine {
  public:
   [[nodiscard]] double doubt() const final { return doubt_; }
   [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const final {
@@ -62,7 +62,7 @@ class CompleteTerm : public BoundaryTerm {
 
  protected:
   // As doubt_of_factors() says. `boundary` must outlive this.
-  CompleteTerm(const Boundary& boundary, double edge_factors);
+  CompleteEngine(const Boundary& boundary, double edge_factors);
 
   [[nodiscard]] const Boundary& boundary() const { return boundary_; }
 

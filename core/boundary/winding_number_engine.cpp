@@ -1,4 +1,4 @@
-#include "core/boundary/boundary_term.h"
+#include "core/boundary/winding_number_engine.h"
 
 #include <cmath>
 #include <limits>
@@ -20,7 +20,7 @@ static_assert(kDoubtPerEdge * kMostFactors * kMaxTriangles <= Boundary::kMostDou
 
 double doubt_of_factors(double edge_factors) { return kDoubtPerEdge * edge_factors; }
 
-CompleteTerm::CompleteTerm(const Boundary& boundary, double edge_factors)
+CompleteEngine::CompleteEngine(const Boundary& boundary, double edge_factors)
     : boundary_(boundary), doubt_(doubt_of_factors(edge_factors)) {}
 
 // |w - w2| + the bound of w2 = n - enclosure, rounded up.

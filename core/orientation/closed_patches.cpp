@@ -29,19 +29,19 @@ std::vector<const ClosedSurface*> surfaces_of(const std::vector<ClosedPatch>& pa
 
 }  // namespace
 
-ClosedTurns turn_closed_patches(const std::vector<ClosedPatch>& patches, const std::vector<Vec3>& vertices) {
+ClosedSigns turn_closed_patches(const std::vector<ClosedPatch>& patches, const std::vector<Vec3>& vertices) {
   const std::vector<int> outward = outward_signs(patches, vertices);
-  ClosedTurns result{outward, std::vector<std::uint32_t>(patches.size())};
+  ClosedSigns result{outward, std::vector<std::uint32_t>(patches.size())};
   std::iota(result.outermost.begin(), result.outermost.end(), 0U);
   if (patches.size() < 2) return result;
   const std::vector<const ClosedSurface*> surfaces = surfaces_of(patches);
   const NestingTree tree = nesting_tree(surfaces_around(surfaces, vertices), surfaces, vertices);
-  std::vector<int>& turn = result.turn;
+  std::vector<int>& sign = result.sign;
   for (const std::uint32_t i : tree.order) {
     const std::uint32_t parent = tree.parent[i];
     if (parent == i) continue;
     const int as_stored = patches[i].stored * patches[parent].stored;
-    turn[i] = as_stored != 0 ? as_stored * turn[parent] : -outward[i] * outward[parent] * turn[parent];
+    sign[i] = as_stored != 0 ? as_stored * sign[parent] : -outward[i] * outward[parent] * sign[parent];
     result.outermost[i] = result.outermost[parent];
   }
   return result;

@@ -17,15 +17,15 @@ struct ClosedPatch {
   int stored = 0;
 };
 
-struct ClosedTurns {
-  std::vector<int> turn;                 // per patch 1 where it stays as its surface is, -1 where it is reversed
+struct ClosedSigns {
+  std::vector<int> sign;                 // per patch 1 where it stays as its surface is, -1 where it is reversed
   std::vector<std::uint32_t> outermost;  // per patch the one with none around it that it lies in; maybe itself
 };
 
 // Outward outside all others, and within another one as orient() says. Outward is what makes the volume positive; where
 // it is 0, the first face by coordinates decides. nesting_tree() tells the innermost of those around a patch. Exact.
 // Uses the threads that ThreadLimit allows; needs DefaultFloatingPoint.
-[[nodiscard]] ClosedTurns turn_closed_patches(const std::vector<ClosedPatch>& patches,
+[[nodiscard]] ClosedSigns turn_closed_patches(const std::vector<ClosedPatch>& patches,
                                               const std::vector<Vec3>& vertices);
 
 }  // namespace raycone

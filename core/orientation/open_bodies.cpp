@@ -19,11 +19,11 @@ struct OutermostPatch {
   std::vector<SurfaceSample> samples;  // the largest first
 };
 
-std::vector<OutermostPatch> outermost_patches(const std::vector<ClosedPatch>& patches, const ClosedTurns& turns,
+std::vector<OutermostPatch> outermost_patches(const std::vector<ClosedPatch>& patches, const ClosedSigns& signs,
                                               const NumberedVertices& vertices) {
   std::vector<OutermostPatch> all;
   for (std::uint32_t i = 0; i < patches.size(); ++i) {
-    if (turns.outermost[i] == i) all.push_back({i, {}});
+    if (signs.outermost[i] == i) all.push_back({i, {}});
   }
   constexpr std::size_t kSamples = 1024, kLeast = 4, kMost = 64;
   const std::size_t each = std::clamp(kSamples / all.size(), kLeast, kMost);
@@ -67,9 +67,9 @@ std::vector<int> winding_around(const std::vector<OutermostPatch>& patches, cons
 }  // namespace
 
 bool turn_within_open_bodies(const std::vector<ClosedPatch>& patches, const OpenBodies& bodies,
-                             const NumberedVertices& vertices, ClosedTurns& turns) {
+                             const NumberedVertices& vertices, ClosedSigns& signs) {
   if (patches.empty() || bodies.turned.empty()) return false;
-  const std::vector<OutermostPatch> outermost = outermost_patches(patches, turns, vertices);
+  const std::vector<OutermostPatch> outermost = outermost_patches(patches, signs, vertices);
   const std::vector<int> around = winding_around(outermost, bodies.turned, vertices.at);
   if (std::ranges::count(around, 0) == std::ssize(around)) return false;
 
@@ -81,11 +81,11 @@ bool turn_within_open_bodies(const std::vector<ClosedPatch>& patches, const Open
     if (around[n] == 0) continue;
     const std::uint32_t i = outermost[n].number;
     const int as_stored = patches[i].stored * around_as_stored[n];
-    const int turn = as_stored != 0 ? as_stored * around[n] : -turns.turn[i] * around[n];
-    reversed[i] = turn != turns.turn[i];
+    const int sign = as_stored != 0 ? as_stored * around[n] : -signs.sign[i] * around[n];
+    reversed[i] = sign != signs.sign[i];
   }
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (reversed[turns.outermost[i]]) turns.turn[i] = -turns.turn[i];
+    if (reversed[signs.outermost[i]]) signs.sign[i] = -signs.sign[i];
   }
   return std::ranges::count(reversed, 1) > 0;
 }

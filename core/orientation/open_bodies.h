@@ -24,6 +24,6 @@ struct OpenBodies {
 // whether anything was turned. Depends on coordinates only. `vertices`: in_unit_box(). Uses the threads that
 // ThreadLimit allows; needs DefaultFloatingPoint.
 bool turn_within_open_bodies(const std::vector<ClosedPatch>& patches, const OpenBodies& bodies,
-                             const NumberedVertices& vertices, ClosedTurns& turns);
+                             const NumberedVertices& vertices, ClosedSigns& signs);
 
 }  // namespace raycone

@@ -11,9 +11,9 @@
 #include "core/orientation/crossing_votes.h"
 #include "core/orientation/dipole_tree.h"
 #include "core/orientation/ray_sums.h"
+#include "core/orientation/sign_problem.h"
 #include "core/orientation/surface_field.h"
 #include "core/orientation/surface_samples.h"
-#include "core/orientation/turn_problem.h"
 
 namespace raycone {
 namespace {
@@ -102,13 +102,13 @@ class OpenSurfaceTurner::Search {
   }
 
   // What a surface does at samples.
-  [[nodiscard]] std::vector<TurnProblem::Effect> effects(std::size_t surface,
+  [[nodiscard]] std::vector<SignProblem::Effect> effects(std::size_t surface,
                                                          std::span<const std::uint32_t> samples) const {
     const SurfaceField field(*surfaces_[surface].faces, vertices_, surfaces_[surface].first.sign < 0);
     std::vector<FieldPoint> points;
     for (const std::uint32_t k : samples) points.push_back({samples_[k].at, is_own(surface, k) ? samples_[k].side : 0});
     const std::vector<double> w = field.winding_numbers(points);
-    std::vector<TurnProblem::Effect> result;
+    std::vector<SignProblem::Effect> result;
     for (std::size_t i = 0; i < samples.size(); ++i) result.push_back({samples[i], static_cast<float>(w[i])});
     return result;
   }
@@ -120,12 +120,12 @@ class OpenSurfaceTurner::Search {
   }
 
   // With what each surface does at its samples; at most a thousand surfaces at once are in memory beside the problem.
-  [[nodiscard]] TurnProblem problem(const std::vector<std::vector<std::uint32_t>>& samples_of) const {
+  [[nodiscard]] SignProblem problem(const std::vector<std::vector<std::uint32_t>>& samples_of) const {
     constexpr std::size_t kAtOnce = 1024;
-    TurnProblem result(weight_);
+    SignProblem result(weight_);
     for (std::size_t first = 0; first < surfaces_.size(); first += kAtOnce) {
       const std::size_t count = std::min(kAtOnce, surfaces_.size() - first);
-      std::vector<std::vector<TurnProblem::Effect>> of_surface(count);
+      std::vector<std::vector<SignProblem::Effect>> of_surface(count);
       parallel_for_each(count, [&](std::size_t i) { of_surface[i] = effects(first + i, samples_of[first + i]); });
       for (const auto& its : of_surface) result.add_surface(its);
     }
@@ -144,19 +144,19 @@ class OpenSurfaceTurner::Search {
   // From what rays say, and on from there: what is far counts as it is turned at the time.
   [[nodiscard]] std::vector<int> turn_many() const {
     DipoleTree tree = far_tree();
-    const TurnProblem near = problem(near_samples(tree));
+    const SignProblem near = problem(near_samples(tree));
     std::vector<int> best = voted();
     std::vector<double> rest = with_far(tree, best);
     double least = near.sum(rest, best);
     constexpr int kMaxRounds = 12;
     for (int round = 0; round < kMaxRounds; ++round) {
-      std::vector<int> turn = best;
-      near.improve(rest, turn);
-      rest = with_far(tree, turn);
-      const double sum = near.sum(rest, turn);
+      std::vector<int> sign = best;
+      near.improve(rest, sign);
+      rest = with_far(tree, sign);
+      const double sum = near.sum(rest, sign);
       if (!(sum < least)) break;
       least = sum;
-      best = std::move(turn);
+      best = std::move(sign);
     }
     return best;
   }
@@ -204,13 +204,13 @@ class OpenSurfaceTurner::Search {
   }
 
   // constant_ and what surfaces do from afar; what one does to its own samples is not far.
-  [[nodiscard]] std::vector<double> with_far(DipoleTree& tree, const std::vector<int>& turn) const {
-    tree.set_signs(turn);
+  [[nodiscard]] std::vector<double> with_far(DipoleTree& tree, const std::vector<int>& sign) const {
+    tree.set_signs(sign);
     std::vector<double> rest = constant_;
     parallel_for_each(samples_.size(), 256, [&](std::size_t k) { rest[k] += tree.far_sum(samples_[k].at); });
     for (std::uint32_t i = kLargestSurfaces; i < surfaces_.size(); ++i) {
       for (std::size_t k = first_sample_[i]; k < first_sample_[i + 1]; ++k) {
-        rest[k] -= turn[i] * tree.far_part(i, samples_[k].at);
+        rest[k] -= sign[i] * tree.far_part(i, samples_[k].at);
       }
     }
     return rest;
@@ -220,13 +220,13 @@ class OpenSurfaceTurner::Search {
     std::vector<Triangle> all(*closed_);
     for (const TurningSurface& surface : surfaces_) all.insert(all.end(), surface.faces->begin(), surface.faces->end());
     const std::vector<double> votes = crossing_votes(all, vertices_, samples_);
-    std::vector<int> turn;
+    std::vector<int> sign;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
       double sum = 0.0;
       for (std::size_t k = first_sample_[i]; k < first_sample_[i + 1]; ++k) sum += weight_[k] * votes[k];
-      turn.push_back(sum < 0.0 ? -1 : 1);
+      sign.push_back(sum < 0.0 ? -1 : 1);
     }
-    return turn;
+    return sign;
   }
 
   const NumberedVertices& numbered_;
@@ -237,7 +237,7 @@ class OpenSurfaceTurner::Search {
   std::vector<std::size_t> first_sample_;
   std::vector<double> weight_;
   std::vector<double> constant_;    // per sample: of the closed faces, less 1/2
-  std::optional<TurnProblem> few_;  // of all surfaces
+  std::optional<SignProblem> few_;  // of all surfaces
 };
 
 OpenSurfaceTurner::OpenSurfaceTurner(const std::vector<OpenSurface>& surfaces, const NumberedVertices& vertices)

@@ -68,9 +68,9 @@ std::vector<Vec3> scaled_vertices(const TriangleMesh& mesh) {
   return vertices;
 }
 
-void append(const std::vector<Triangle>& faces, int turn, std::vector<Triangle>& to) {
+void append(const std::vector<Triangle>& faces, int sign, std::vector<Triangle>& to) {
   for (Triangle t : faces) {
-    if (turn < 0) reverse(t);
+    if (sign < 0) reverse(t);
     to.push_back(t);
   }
 }
@@ -79,7 +79,7 @@ void append(const std::vector<Triangle>& faces, int turn, std::vector<Triangle>&
 class PieceTurner {
  public:
   PieceTurner(std::vector<PieceFaces> pieces, const Pieces& kinds, const std::vector<Vec3>& vertices)
-      : vertices_(vertices), turn_(pieces.size(), 1) {
+      : vertices_(vertices), sign_(pieces.size(), 1) {
     for (std::size_t i = 0; i < pieces.size(); ++i) {
       if (kinds.is_closed[i]) {
         closed_numbers_.push_back(i);
@@ -94,30 +94,30 @@ class PieceTurner {
 
   // For each piece 1 or -1.
   std::vector<int> turn() {
-    ClosedTurns of_closed = turn_closed_patches(closed_, vertices_);
+    ClosedSigns of_closed = turn_closed_patches(closed_, vertices_);
     if (!open_.empty()) {
-      std::vector<Triangle> closed = settled(of_closed.turn);
+      std::vector<Triangle> closed = settled(of_closed.sign);
       const NumberedVertices moved(moved_vertices(), vertices_);
       OpenSurfaceTurner turner(open_, moved);
       std::vector<int> of_open = turner.turn(closed);
       // What lies in a cavity may have to be turned, too.
       if (turn_within_open_bodies(closed_, bodies(of_open), moved, of_closed)) {
-        closed = settled(of_closed.turn);
+        closed = settled(of_closed.sign);
         of_open = turner.turn(closed);
       }
-      for (std::size_t i = 0; i < open_.size(); ++i) turn_[open_numbers_[i]] = of_open[i];
+      for (std::size_t i = 0; i < open_.size(); ++i) sign_[open_numbers_[i]] = of_open[i];
     }
-    for (std::size_t i = 0; i < closed_.size(); ++i) turn_[closed_numbers_[i]] = of_closed.turn[i];
-    return std::move(turn_);
+    for (std::size_t i = 0; i < closed_.size(); ++i) sign_[closed_numbers_[i]] = of_closed.sign[i];
+    return std::move(sign_);
   }
 
  private:
-  [[nodiscard]] std::vector<Triangle> settled(const std::vector<int>& turn) const {
+  [[nodiscard]] std::vector<Triangle> settled(const std::vector<int>& sign) const {
     std::size_t count = 0;
     for (const ClosedPatch& patch : closed_) count += patch.surface.faces.size();
     std::vector<Triangle> faces;
     faces.reserve(count);
-    for (std::size_t i = 0; i < closed_.size(); ++i) append(closed_[i].surface.faces, turn[i], faces);
+    for (std::size_t i = 0; i < closed_.size(); ++i) append(closed_[i].surface.faces, sign[i], faces);
     return faces;
   }
 
@@ -128,19 +128,19 @@ class PieceTurner {
     return in_unit_box(vertices_, faces);
   }
 
-  [[nodiscard]] OpenBodies bodies(const std::vector<int>& turn) const {
+  [[nodiscard]] OpenBodies bodies(const std::vector<int>& sign) const {
     OpenBodies bodies;
-    bodies.relation = turn[0] * open_stored_[0];
+    bodies.relation = sign[0] * open_stored_[0];
     for (std::size_t i = 0; i < open_.size(); ++i) {
-      if (turn[i] * open_stored_[i] != bodies.relation) bodies.relation = 0;
-      append(open_[i].faces, turn[i], bodies.turned);
+      if (sign[i] * open_stored_[i] != bodies.relation) bodies.relation = 0;
+      append(open_[i].faces, sign[i], bodies.turned);
       if (open_stored_[i] != 0) append(open_[i].faces, open_stored_[i], bodies.as_stored);
     }
     return bodies;
   }
 
   const std::vector<Vec3>& vertices_;
-  std::vector<int> turn_;
+  std::vector<int> sign_;
   std::vector<std::size_t> closed_numbers_, open_numbers_;
   std::vector<ClosedPatch> closed_;
   std::vector<OpenSurface> open_;
@@ -151,15 +151,15 @@ class PieceTurner {
 enum class FaceFate : std::uint8_t { kAsStored, kReversed, kDropped };
 
 // `turn`: per unique face, 1 as first stored or -1.
-std::vector<FaceFate> fates(const UniqueFaces& unique, const std::vector<std::int8_t>& turn, std::size_t faces) {
+std::vector<FaceFate> fates(const UniqueFaces& unique, const std::vector<std::int8_t>& sign, std::size_t faces) {
   std::vector<FaceFate> fate(faces, FaceFate::kAsStored);
-  for (std::size_t i = 0; i < turn.size(); ++i) {
-    if (turn[i] < 0) fate[unique.first[i]] = FaceFate::kReversed;
+  for (std::size_t i = 0; i < sign.size(); ++i) {
+    if (sign[i] < 0) fate[unique.first[i]] = FaceFate::kReversed;
   }
   // A copy that is stored as it should be is left, where there is one.
   for (auto it = unique.copies.begin(); it != unique.copies.end();) {
     const auto end = std::find_if(it, unique.copies.end(), [&](const FaceCopy& c) { return c.unique != it->unique; });
-    const bool as_first = turn[it->unique] > 0;
+    const bool as_first = sign[it->unique] > 0;
     const auto right = std::find_if(it, end, [&](const FaceCopy& c) { return c.as_first == as_first; });
     const auto left = right != end ? right : it;
     for (auto copy = it; copy != end; ++copy) fate[copy->face] = FaceFate::kDropped;
@@ -194,14 +194,14 @@ OrientedMesh with_fates(TriangleMesh mesh, const std::vector<FaceFate>& fate) {
 
 // As OrientationCounts says. `turn` as for fates().
 std::uint64_t wall_edges(const UniqueFaces& unique, const FaceNeighbours& neighbours,
-                         const std::vector<std::int8_t>& turn) {
+                         const std::vector<std::int8_t>& sign) {
   std::uint64_t count = 0;
   for (const UnpairedEdge& edge : neighbours.unpaired()) {
     bool has_others = false;
     int walls = 0, others = 0;
     for (const FaceAtEdge& at : edge.faces) {
       const bool is_wall = unique.vote[at.face] == 0;
-      (is_wall ? walls : others) += at.direction * turn[at.face];
+      (is_wall ? walls : others) += at.direction * sign[at.face];
       has_others |= !is_wall;
     }
     count += has_others && others == 0 && walls != 0;
@@ -229,17 +229,17 @@ OrientedMesh turned_to_agree(TriangleMesh mesh, bool is_welded) {
   }
   const Patches patches = find_patches(unique.corners, neighbours, mesh.vertices);
   const Pieces pieces = find_pieces(patches, neighbours, unique.vote);
-  const std::vector<int> turn_of_piece = PieceTurner(faces_of_pieces(unique, patches, pieces), pieces, vertices).turn();
-  std::vector<std::int8_t> turn(patches.sign);
-  for (std::size_t face = 0; face < turn.size(); ++face) {
+  const std::vector<int> sign_of_piece = PieceTurner(faces_of_pieces(unique, patches, pieces), pieces, vertices).turn();
+  std::vector<std::int8_t> sign(patches.sign);
+  for (std::size_t face = 0; face < sign.size(); ++face) {
     const std::uint32_t patch = patches.of_face[face];
-    turn[face] = static_cast<std::int8_t>(turn[face] * pieces.sign[patch] * turn_of_piece[pieces.of_patch[patch]]);
+    sign[face] = static_cast<std::int8_t>(sign[face] * pieces.sign[patch] * sign_of_piece[pieces.of_patch[patch]]);
   }
-  const std::vector<FaceFate> fate = fates(unique, turn, mesh.triangles.size());
+  const std::vector<FaceFate> fate = fates(unique, sign, mesh.triangles.size());
   OrientedMesh result = with_fates(std::move(mesh), fate);
   result.counts.patches = patches.size();
   result.counts.cut_edges = patches.cut_edges;
-  result.counts.wall_edges = wall_edges(unique, neighbours, turn);
+  result.counts.wall_edges = wall_edges(unique, neighbours, sign);
   return result;
 }
 

@@ -123,26 +123,26 @@ class PieceFinder {
   // False where there is nothing to join: links that contradict each other, or lead to a piece that hinders, do not.
   bool join_linked(const std::vector<std::vector<PieceLink>>& links, const std::vector<std::uint8_t>& hinders) {
     std::vector<std::uint32_t> joined(pieces_.size());
-    std::vector<int> turn(pieces_.size(), 0);
+    std::vector<int> sign(pieces_.size(), 0);
     std::uint32_t count = 0;
     for (std::uint32_t start = 0; start < pieces_.size(); ++start) {
-      if (turn[start] != 0) continue;
-      const std::vector<std::uint32_t> linked = spread(start, links, turn);
+      if (sign[start] != 0) continue;
+      const std::vector<std::uint32_t> linked = spread(start, links, sign);
       const bool consistent = std::all_of(linked.begin(), linked.end(), [&](std::uint32_t piece) {
         return hinders[piece] == 0 && std::all_of(links[piece].begin(), links[piece].end(), [&](const PieceLink& link) {
-                 return turn[piece] * turn[link.to] == link.relation;
+                 return sign[piece] * sign[link.to] == link.relation;
                });
       });
       for (const std::uint32_t piece : linked) {
         joined[piece] = consistent ? count : count++;
-        if (!consistent) turn[piece] = 1;
+        if (!consistent) sign[piece] = 1;
       }
       count += consistent;
     }
     if (count == pieces_.size()) return false;
     for (std::size_t patch = 0; patch < patches_.size(); ++patch) {
       const std::uint32_t piece = pieces_.of_patch[patch];
-      pieces_.sign[patch] = static_cast<std::int8_t>(pieces_.sign[patch] * turn[piece]);
+      pieces_.sign[patch] = static_cast<std::int8_t>(pieces_.sign[patch] * sign[piece]);
       pieces_.of_patch[patch] = joined[piece];
     }
     pieces_.is_closed.assign(count, 1);
@@ -150,13 +150,13 @@ class PieceFinder {
   }
 
   static std::vector<std::uint32_t> spread(std::uint32_t start, const std::vector<std::vector<PieceLink>>& links,
-                                           std::vector<int>& turn) {
+                                           std::vector<int>& sign) {
     std::vector<std::uint32_t> reached{start};
-    turn[start] = 1;
+    sign[start] = 1;
     for (std::size_t next = 0; next < reached.size(); ++next) {
       for (const PieceLink& link : links[reached[next]]) {
-        if (turn[link.to] != 0) continue;
-        turn[link.to] = turn[reached[next]] * link.relation;
+        if (sign[link.to] != 0) continue;
+        sign[link.to] = sign[reached[next]] * link.relation;
         reached.push_back(link.to);
       }
     }

@@ -478,8 +478,8 @@ MUTANTS = [
         ("core/orientation/unique_faces.cpp", "square(t[0]) + square(t[1]) + square(t[2])",
          "square(t[0]) + 3 * square(t[1]) + square(t[2])")]),
     Mutant("closed_relation_not_kept", "patches that agree as stored keep their relation", [
-        ("core/orientation/closed_patches.cpp", "as_stored != 0 ? as_stored * turn[parent]",
-         "as_stored == 2 ? as_stored * turn[parent]")]),
+        ("core/orientation/closed_patches.cpp", "as_stored != 0 ? as_stored * sign[parent]",
+         "as_stored == 2 ? as_stored * sign[parent]")]),
     Mutant("nesting_of_some_vertices", "a patch is nested if all of its vertices are inside", [
         ("core/orientation/nesting.cpp", "(winding == 0 ? misses : hits) = true;",
          "if (winding != 0) hits = true;")]),
@@ -523,13 +523,13 @@ MUTANTS = [
     Mutant("collapsed_faces_have_a_side", "faces of which corners have met add nothing", [
         ("core/orientation/surface_field.cpp", "if (has_met_corners(t, vertices)) continue;", "")]),
     Mutant("no_cavities_in_open_bodies", "a closed patch in an open body is a cavity", [
-        ("core/orientation/open_bodies.cpp", ": -turns.turn[i] * around[n];", ": turns.turn[i] * around[n];")]),
+        ("core/orientation/open_bodies.cpp", ": -signs.sign[i] * around[n];", ": signs.sign[i] * around[n];")]),
     Mutant("open_body_stored_is_forgotten", "a closed patch keeps its relation to an open body", [
         ("core/orientation/open_bodies.cpp", "as_stored != 0 ? as_stored * around[n]", "as_stored == 2 ? as_stored * around[n]")]),
     Mutant("open_body_around_one_sample", "a patch is in an open body if all of its samples are", [
         ("core/orientation/open_bodies.cpp", "*least > 0.5 ? 1", "*most > 0.5 ? 1")]),
     Mutant("cavity_without_its_content", "what lies in a patch is turned with it", [
-        ("core/orientation/open_bodies.cpp", "if (reversed[turns.outermost[i]])", "if (reversed[i])")]),
+        ("core/orientation/open_bodies.cpp", "if (reversed[signs.outermost[i]])", "if (reversed[i])")]),
     Mutant("innermost_is_outermost", "a patch alternates with the innermost one around it", [
         ("core/orientation/nesting_tree.cpp", "depth_[a] > depth_[b]", "depth_[a] < depth_[b]")]),
     Mutant("nesting_of_mutual_patches", "patches that are around each other are not within each other", [

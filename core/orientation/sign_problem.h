@@ -8,28 +8,28 @@
 
 namespace raycone {
 
-// The sum over samples k of weight[k] (rest[k] + sum over surfaces p of turn[p] w(p, k))^2, where most w(p, k) are 0 or
+// The sum over samples k of weight[k] (rest[k] + sum over surfaces p of sign[p] w(p, k))^2, where most w(p, k) are 0 or
 // left out. All of it is summed in one fixed order.
-class TurnProblem {
+class SignProblem {
  public:
   struct Effect {
     std::uint32_t sample;
     float winding;  // w; its rounding is far below what decides
   };
 
-  explicit TurnProblem(std::vector<double> weight) : weight_(std::move(weight)), begin_(1, 0) {}
+  explicit SignProblem(std::vector<double> weight) : weight_(std::move(weight)), begin_(1, 0) {}
 
   // The effects of the next surface.
   void add_surface(std::span<const Effect> effects);
   [[nodiscard]] std::size_t surfaces() const { return begin_.size() - 1; }
 
-  // Starting from no surface at all, each in turn gets the sign that makes the sum smaller.
+  // Starting from no surface at all, one after the other gets the sign that makes the sum smaller.
   [[nodiscard]] std::vector<int> one_after_the_other(std::vector<double> rest) const;
 
-  [[nodiscard]] double sum(std::vector<double> rest, const std::vector<int>& turn) const;
+  [[nodiscard]] double sum(std::vector<double> rest, const std::vector<int>& sign) const;
 
   // Turns single surfaces, as long as that makes the sum smaller. Returns the sum.
-  double improve(std::vector<double> rest, std::vector<int>& turn) const;
+  double improve(std::vector<double> rest, std::vector<int>& sign) const;
 
  private:
   [[nodiscard]] std::span<const Effect> effects(std::size_t surface) const {

@@ -16,8 +16,15 @@ constexpr std::size_t kVerticesPerTask = 8192;
 
 constexpr std::size_t kGroupsPerTask = 4;
 
+// Rows [begin, end) along y or z.
+struct RowRange {
+  std::uint32_t begin, end;
+  [[nodiscard]] bool empty() const { return begin >= end; }
+  [[nodiscard]] std::uint32_t size() const { return end - begin; }
+};
+
 // The values that equal x among ascending ones: where there are none, both ends tell where x lies.
-SampleRange equal_range(double x, const std::vector<double>& values, double per_unit) {
+RowRange equal_range(double x, const std::vector<double>& values, double per_unit) {
   const std::size_t below = count_below(values, per_unit, x);
   std::size_t up_to = below;
   while (up_to < values.size() && values[up_to] == x) ++up_to;
@@ -25,14 +32,14 @@ SampleRange equal_range(double x, const std::vector<double>& values, double per_
 }
 
 // The values within the interval that three numbers span.
-SampleRange hull(const SampleRange& a, const SampleRange& b, const SampleRange& c) {
+RowRange hull(const RowRange& a, const RowRange& b, const RowRange& c) {
   return {std::min({a.begin, b.begin, c.begin}), std::max({a.end, b.end, c.end})};
 }
 
 // Calls visit(j, k) for the rows that the triangle may concern, of those in its box.
 template <class Visit>
-void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& rows, const SampleRange& js,
-                const SampleRange& ks, const Visit& visit) {
+void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& rows, const RowRange& js,
+                const RowRange& ks, const Visit& visit) {
   constexpr std::uint32_t kFew = 6;  // rows, not worth a section
   if (std::max(js.size(), ks.size()) <= kFew) {
     for (std::uint32_t k = ks.begin; k < ks.end; ++k) {
@@ -55,7 +62,7 @@ void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& 
 
 // Where a vertex lies among the rows.
 struct VertexRows {
-  SampleRange y, z;
+  RowRange y, z;
 };
 
 VertexRows rows_at(const Vec3& v, const LatticeRows& rows) {
@@ -65,7 +72,7 @@ VertexRows rows_at(const Vec3& v, const LatticeRows& rows) {
 // One triangle, whose corners lie there among the rows. Most meet no row: their corners are not fetched.
 void scan(const TriangleMesh& mesh, const Triangle& t, const VertexRows& at_a, const VertexRows& at_b,
           const VertexRows& at_c, const LatticeRows& rows, LatticeSums::Collector& collector) {
-  const SampleRange ks = hull(at_a.z, at_b.z, at_c.z), js = hull(at_a.y, at_b.y, at_c.y);
+  const RowRange ks = hull(at_a.z, at_b.z, at_c.z), js = hull(at_a.y, at_b.y, at_c.y);
   if (static_cast<int>(ks.empty()) | static_cast<int>(js.empty())) return;
   const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
   if (rows.xs.front() > std::max({a.x, b.x, c.x})) return;

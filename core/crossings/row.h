@@ -21,13 +21,6 @@ struct Row {
   [[nodiscard]] Vec3 query(std::size_t i) const { return {xs[i], y, z}; }
 };
 
-// Samples [begin, end) along an axis, at most 2^32 - 1.
-struct SampleRange {
-  std::uint32_t begin, end;
-  [[nodiscard]] bool empty() const { return begin >= end; }
-  [[nodiscard]] std::uint32_t size() const { return end - begin; }
-};
-
 // Number of values of the ascending `xs` below `value`. Fast where they are about evenly spaced.
 [[nodiscard]] inline std::size_t count_below(std::span<const double> xs, double samples_per_unit, double value) {
   constexpr int kPatience = 4;  // steps from the first guess; rounding takes one

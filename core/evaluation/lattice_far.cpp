@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/boundary/edge_time.h"
+#include "core/data/sample_box.h"
 #include "core/evaluation/costs.h"
 #include "core/evaluation/lattice_tile.h"
 
@@ -143,19 +144,19 @@ class BlockValues {
 void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,
                      const std::function<CrossingsOfRow(std::size_t row)>& crossings, std::span<double> values,
                      std::atomic<std::uint64_t>* done) {
-  std::array<SampleRange, 3> part;
+  SampleBox part;
   for (std::size_t a = 0; a < 3; ++a) {
-    const auto begin = static_cast<std::uint32_t>(block.first[a] - lattice.index_min[a]);
-    part[a] = {begin, begin + static_cast<std::uint32_t>(block.counts[a])};
+    part.begin[a] = static_cast<std::size_t>(block.first[a] - lattice.index_min[a]);
+    part.end[a] = part.begin[a] + static_cast<std::size_t>(block.counts[a]);
   }
   const BlockValues of_block(mesh, axes);
   mesh.blocks().sums.for_each_row(
       axes, part, [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums) {
-        const std::size_t row = (z - part[2].begin) * part[1].size() + y - part[1].begin;
-        const std::size_t in_row = x - part[0].begin;
-        const std::span<double> of_row = values.subspan(row * part[0].size(), part[0].size());
+        const std::size_t row = (z - part.begin[2]) * part.side(1) + y - part.begin[1];
+        const std::size_t in_row = x - part.begin[0];
+        const std::span<double> of_row = values.subspan(row * part.side(0), part.side(0));
         const auto set = [&](std::size_t begin, std::size_t end, double n, double caps) {
-          of_block.set({part[0].begin + begin, y, z}, sums.subspan(begin - in_row, end - begin), n, caps,
+          of_block.set({part.begin[0] + begin, y, z}, sums.subspan(begin - in_row, end - begin), n, caps,
                        of_row.subspan(begin, end - begin));
           return true;
         };

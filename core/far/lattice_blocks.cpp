@@ -31,7 +31,7 @@ namespace {
 // The blocks of a part of a lattice.
 class PartBlocks {
  public:
-  PartBlocks(const LatticeBlocksWalk& walk, const std::array<SampleRange, 3>& part, const LatticeBlocks::Sink& sink)
+  PartBlocks(const LatticeBlocksWalk& walk, const SampleBox& part, const LatticeBlocks::Sink& sink)
       : walk_(walk), part_(part), sink_(sink) {}
 
   // The parts of a block that are asked for; none if the block is to be evaluated.
@@ -76,14 +76,13 @@ class PartBlocks {
 
  private:
   const LatticeBlocksWalk& walk_;
-  const std::array<SampleRange, 3>& part_;
+  const SampleBox& part_;
   const LatticeBlocks::Sink& sink_;
 };
 
 }  // namespace
 
-void LatticeBlocks::for_each_row(const LatticeAxes& axes, const std::array<SampleRange, 3>& part,
-                                 const Sink& sink) const {
+void LatticeBlocks::for_each_row(const LatticeAxes& axes, const SampleBox& part, const Sink& sink) const {
   constexpr std::size_t kEnough = 48;  // blocks for all threads
   const LatticeBlocksWalk walk(*this, axes);
   const PartBlocks of_part(walk, part, sink);

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/boundary/solid_angle_kernel.h"
-#include "core/crossings/row.h"
+#include "core/data/sample_box.h"
 #include "core/data/triangle_mesh.h"
 #include "core/far/cover.h"
 #include "core/far/harmonic_polynomial.h"
@@ -44,7 +44,7 @@ class LatticeBlocks {
   using Sink = std::function<void(std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums)>;
 
   // Calls `sink` for rows that make up the part of the lattice, from several threads. Needs DefaultFloatingPoint.
-  void for_each_row(const LatticeAxes& axes, const std::array<SampleRange, 3>& part, const Sink& sink) const;
+  void for_each_row(const LatticeAxes& axes, const SampleBox& part, const Sink& sink) const;
 
   // How long one sample of the lattice takes, about; in units of a triangle's solid angle there.
   [[nodiscard]] double cost(const LatticeAxes& axes) const;

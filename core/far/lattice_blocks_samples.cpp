@@ -10,12 +10,12 @@ namespace {
 
 // Where the sub-block ends that `at` is in. Sub-blocks begin where they do for the whole block.
 std::size_t end_of_sub_block(const SampleBlock& block, std::size_t axis, std::size_t at) {
-  return at + kSubBlock[axis] - (at - block.first[axis]) % kSubBlock[axis];
+  return at + kSubBlock[axis] - (at - block.samples.begin[axis]) % kSubBlock[axis];
 }
 
 }  // namespace
 
-void LatticeBlocksWalk::evaluate(const SampleBlock& block, const std::array<SampleRange, 3>& part,
+void LatticeBlocksWalk::evaluate(const SampleBlock& block, const SampleBox& part,
                                  const LatticeBlocks::Sink& sink) const {
   const std::size_t degree = this->degree(block);
   GridValues grid(matrices_);
@@ -23,8 +23,8 @@ void LatticeBlocksWalk::evaluate(const SampleBlock& block, const std::array<Samp
   std::vector<double> numbers;
   SampleBox all, layers;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    all.begin[axis] = std::max<std::size_t>(block.first[axis], part[axis].begin);
-    all.end[axis] = std::min<std::size_t>(block.last[axis], part[axis].end);
+    all.begin[axis] = std::max(block.samples.begin[axis], part.begin[axis]);
+    all.end[axis] = std::min(block.samples.end[axis], part.end[axis]);
   }
   layers = all;
   for (; layers.begin[2] < all.end[2]; layers.begin[2] = layers.end[2]) {
@@ -66,14 +66,15 @@ void LatticeBlocksWalk::set_layers(const SampleBlock& block, std::size_t degree,
 // Which nodes are far is a matter of the whole sub-block, whatever part of it is asked for.
 void LatticeBlocksWalk::add_near(const SampleBlock& block, const SampleBox& samples, LatticeCovers& covers,
                                  const BoxSums& sums) const {
-  std::array<std::size_t, 3> first, last;
+  SampleBox sub_block;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    first[axis] = samples.begin[axis] - (samples.begin[axis] - block.first[axis]) % kSubBlock[axis];
-    last[axis] = std::min(block.last[axis], first[axis] + kSubBlock[axis]);
+    const std::size_t before = (samples.begin[axis] - block.samples.begin[axis]) % kSubBlock[axis];
+    sub_block.begin[axis] = samples.begin[axis] - before;
+    sub_block.end[axis] = std::min(block.samples.end[axis], sub_block.begin[axis] + kSubBlock[axis]);
   }
-  const Cover cover = cover_at(block, first, last);
+  const Cover cover = cover_at(block, sub_block);
   count_terms(cover, samples.size());
-  covers.add(cover, box_of(first, last), samples, sums);
+  covers.add(cover, box_of(sub_block), samples, sums);
 }
 
 }  // namespace raycone

@@ -41,8 +41,8 @@ double making_cost(double far, bool parent) {
 
 // Cut so that sub-blocks are whole, but for those at the end of the lattice.
 std::size_t middle_of(const SampleBlock& block, std::size_t axis) {
-  const std::size_t half = block.count(axis) / 2, step = kSubBlock[axis];
-  return block.first[axis] + (half < step ? half : (half + step / 2) / step * step);
+  const std::size_t half = block.samples.side(axis) / 2, step = kSubBlock[axis];
+  return block.samples.begin[axis] + (half < step ? half : (half + step / 2) / step * step);
 }
 
 // By how much the nodes of a fit are moved along an axis at most, half sides: they are coordinates, which are rounded.
@@ -84,26 +84,25 @@ LatticeBlocksWalk::LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeA
 
 SampleBlock LatticeBlocksWalk::lattice() const {
   const std::size_t ends = axes_of_ == AxesOf::kCells ? 1 : 0;
-  const std::array<std::size_t, 3> last{axes_[0].size() - ends, axes_[1].size() - ends, axes_[2].size() - ends};
-  return {.first = {0, 0, 0}, .last = last};
+  return {.samples = {{0, 0, 0}, {axes_[0].size() - ends, axes_[1].size() - ends, axes_[2].size() - ends}}};
 }
 
 double LatticeBlocksWalk::length(const SampleBlock& block, std::size_t axis) const {
-  return last_of(axis, block.last[axis]) - first_of(axis, block.first[axis]);
+  return last_of(axis, block.samples.end[axis]) - first_of(axis, block.samples.begin[axis]);
 }
 
 // The block cut in two along its longer axes. Sub-blocks of cells are the same whatever the blocks, so they stay whole.
 std::vector<SampleBlock> LatticeBlocksWalk::halves(const SampleBlock& block) const {
   const double longest = std::max({length(block, 0), length(block, 1), length(block, 2)});
   std::vector<SampleBlock> pieces{
-      {.level = block.level + 1, .first = block.first, .last = block.last, .field = block.field, .spent = block.spent}};
+      {.level = block.level + 1, .samples = block.samples, .field = block.field, .spent = block.spent}};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const std::size_t least = axes_of_ == AxesOf::kCells ? 2 * kSubBlock[axis] : 2;
-    if (block.count(axis) < least || length(block, axis) <= 0.6 * longest) continue;
+    if (block.samples.side(axis) < least || length(block, axis) <= 0.6 * longest) continue;
     const std::size_t middle = middle_of(block, axis), count = pieces.size();
     for (std::size_t n = 0; n < count; ++n) {
       SampleBlock upper = pieces[n];
-      pieces[n].last[axis] = upper.first[axis] = middle;
+      pieces[n].samples.end[axis] = upper.samples.begin[axis] = middle;
       pieces.push_back(std::move(upper));
     }
   }
@@ -113,18 +112,18 @@ std::vector<SampleBlock> LatticeBlocksWalk::halves(const SampleBlock& block) con
 Cube LatticeBlocksWalk::cube_around(const SampleBlock& block) const {
   Cube cube{{}, 0.0};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const double first = first_of(axis, block.first[axis]), last = last_of(axis, block.last[axis]);
+    const double first = first_of(axis, block.samples.begin[axis]), last = last_of(axis, block.samples.end[axis]);
     cube.centre[static_cast<int>(axis)] = first / 2 + last / 2;
     cube.half = std::max(cube.half, (last / 2 - first / 2) * kMargin);
   }
   return cube;
 }
 
-Box LatticeBlocksWalk::box_of(const std::array<std::size_t, 3>& first, const std::array<std::size_t, 3>& last) const {
+Box LatticeBlocksWalk::box_of(const SampleBox& samples) const {
   Box box;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    box.lower[static_cast<int>(axis)] = first_of(axis, first[axis]);
-    box.upper[static_cast<int>(axis)] = last_of(axis, last[axis]);
+    box.lower[static_cast<int>(axis)] = first_of(axis, samples.begin[axis]);
+    box.upper[static_cast<int>(axis)] = last_of(axis, samples.end[axis]);
   }
   return box;
 }
@@ -166,7 +165,7 @@ Cover LatticeBlocksWalk::far_of(SampleBlock& block, std::span<const std::uint32_
     block.near = std::move(far.others);
   }
   block.spent += far.error;
-  block.near_cost = cover_at(block, block.first, block.last).cost;
+  block.near_cost = cover_at(block, block.samples).cost;
   return cover;
 }
 
@@ -252,9 +251,8 @@ Cover LatticeBlocksWalk::cover_at_nodes(std::span<const std::uint32_t> far, cons
   return cover_in(blocks_.tree_, far, box_around(cube), kNodeShare * blocks_.tolerance_ / HarmonicFit::kLargestWeights);
 }
 
-Cover LatticeBlocksWalk::cover_at(const SampleBlock& block, const std::array<std::size_t, 3>& first,
-                                  const std::array<std::size_t, 3>& last) const {
-  return cover_in(blocks_.tree_, block.near, box_of(first, last), kSampleShare * blocks_.tolerance_, near_triangle_);
+Cover LatticeBlocksWalk::cover_at(const SampleBlock& block, const SampleBox& sub_block) const {
+  return cover_in(blocks_.tree_, block.near, box_of(sub_block), kSampleShare * blocks_.tolerance_, near_triangle_);
 }
 
 // ---- Choosing --------------------------------------------------------------------------------------------------
@@ -346,9 +344,9 @@ void LatticeBlocksWalk::count_polynomials(std::size_t samples) const {
   blocks_.far_terms_.fetch_add(samples, std::memory_order_relaxed);
 }
 
-bool LatticeBlocksWalk::overlap(const SampleBlock& block, const std::array<SampleRange, 3>& part) {
+bool LatticeBlocksWalk::overlap(const SampleBlock& block, const SampleBox& part) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (!(part[axis].begin < block.last[axis] && block.first[axis] < part[axis].end)) return false;
+    if (!(part.begin[axis] < block.samples.end[axis] && block.samples.begin[axis] < part.end[axis])) return false;
   }
   return true;
 }
@@ -357,9 +355,8 @@ std::size_t LatticeBlocksWalk::degree(const SampleBlock& block) const {
   return block.field ? truncation(block.field->coefficients, kTruncationShare * blocks_.tolerance_).degree : 0;
 }
 
-CoverSums LatticeBlocksWalk::sums_of(const Cover& cover, const std::array<std::size_t, 3>& first,
-                                     const std::array<std::size_t, 3>& last) const {
-  return {blocks_.tree_, cover, box_of(first, last), kernels_};
+CoverSums LatticeBlocksWalk::sums_of(const Cover& cover, const SampleBox& sub_block) const {
+  return {blocks_.tree_, cover, box_of(sub_block), kernels_};
 }
 
 }  // namespace raycone

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "core/data/sample_box.h"
 #include "core/far/cover.h"
 #include "core/far/far_kernel.h"
 #include "core/far/harmonic_polynomial.h"
@@ -32,19 +33,20 @@ enum class AxesOf { kSamples, kCells };
 // In samples, or cells, which share a list of what is near: smaller ones make too many lists, larger ones too long.
 inline constexpr std::array<std::size_t, 3> kSubBlock{16, 16, 8};
 
-// Samples, or cells, [first, last) along each axis.
+// Samples of a lattice, and what acts on them.
 struct SampleBlock {
-  std::size_t level = 0;  // 0: the whole lattice
-  std::array<std::size_t, 3> first, last;
+  std::size_t level = 0;                       // 0: the whole lattice
+  SampleBox samples{};                         // or cells of it
   Cube cube{};                                 // around them
   std::vector<std::uint32_t> near{};           // triangles, ascending
   double near_cost = 0.0;                      // of their sum at a sample, in units of a triangle's
   std::shared_ptr<const FieldOnCube> field{};  // none where nothing is far
   double spent = 0.0;                          // of the tolerance: by how much the field is off at most
 
-  [[nodiscard]] std::size_t count(std::size_t axis) const { return last[axis] - first[axis]; }
+  // In floating point: the number may not fit in 64 bits.
   [[nodiscard]] double size() const {
-    return static_cast<double>(count(0)) * static_cast<double>(count(1)) * static_cast<double>(count(2));
+    return static_cast<double>(samples.side(0)) * static_cast<double>(samples.side(1)) *
+           static_cast<double>(samples.side(2));
   }
 };
 
@@ -79,18 +81,15 @@ class LatticeBlocksWalk {
   // Of a block that is not divided: its polynomial needs no more than that, 0 where it has none.
   [[nodiscard]] std::size_t degree(const SampleBlock& block) const;
   // Of such a block, what is near those of its samples, or cells, that make up one sub-block.
-  [[nodiscard]] Cover cover_at(const SampleBlock& block, const std::array<std::size_t, 3>& first,
-                               const std::array<std::size_t, 3>& last) const;
-  [[nodiscard]] CoverSums sums_of(const Cover& cover, const std::array<std::size_t, 3>& first,
-                                  const std::array<std::size_t, 3>& last) const;
+  [[nodiscard]] Cover cover_at(const SampleBlock& block, const SampleBox& sub_block) const;
+  [[nodiscard]] CoverSums sums_of(const Cover& cover, const SampleBox& sub_block) const;
   void count_terms(const Cover& cover, std::size_t samples) const { blocks_.count_terms(cover, samples); }
   void count_polynomials(std::size_t samples) const;
 
   // Calls the sink for the rows of the part that are in a block that is not divided.
-  void evaluate(const SampleBlock& block, const std::array<SampleRange, 3>& part,
-                const LatticeBlocks::Sink& sink) const;
+  void evaluate(const SampleBlock& block, const SampleBox& part, const LatticeBlocks::Sink& sink) const;
 
-  [[nodiscard]] static bool overlap(const SampleBlock& block, const std::array<SampleRange, 3>& part);
+  [[nodiscard]] static bool overlap(const SampleBlock& block, const SampleBox& part);
 
   // As LatticeBlocks::cost().
   [[nodiscard]] double cost() const;
@@ -105,7 +104,7 @@ class LatticeBlocksWalk {
   [[nodiscard]] double length(const SampleBlock& block, std::size_t axis) const;
   [[nodiscard]] std::vector<SampleBlock> halves(const SampleBlock& block) const;
   [[nodiscard]] Cube cube_around(const SampleBlock& block) const;
-  [[nodiscard]] Box box_of(const std::array<std::size_t, 3>& first, const std::array<std::size_t, 3>& last) const;
+  [[nodiscard]] Box box_of(const SampleBox& samples) const;
   [[nodiscard]] double estimate(const SampleBlock& block) const;
 
   // Of the parent's near triangles, or all, those that are far from a child go to the polynomials.

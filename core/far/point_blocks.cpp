@@ -40,9 +40,9 @@ std::uint32_t groups_along(std::size_t axis, const LatticeAxes& axes) {
 struct PointBlocks::Block {
   explicit Block(SampleBlock cells) : block(std::move(cells)) {}
 
-  [[nodiscard]] bool has(const Corner& cell) const {
+  [[nodiscard]] bool has(const std::array<std::size_t, 3>& cell) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      if (!(block.first[axis] <= cell[axis] && cell[axis] < block.last[axis])) return false;
+      if (!(block.samples.begin[axis] <= cell[axis] && cell[axis] < block.samples.end[axis])) return false;
     }
     return true;
   }
@@ -82,17 +82,15 @@ std::optional<std::uint32_t> PointBlocks::group_of(const Vec3& q) const {
   return group;
 }
 
-PointBlocks::Corner PointBlocks::first_cell(std::uint32_t group) const {
-  const std::uint32_t x = group % counts_[0], y = group / counts_[0] % counts_[1], z = group / counts_[0] / counts_[1];
-  return {x * kSubBlock[0], y * kSubBlock[1], z * kSubBlock[2]};
-}
-
-PointBlocks::Corner PointBlocks::last_cell(const Corner& first) const {
-  Corner last;
+SampleBox PointBlocks::cells_of(std::uint32_t group) const {
+  const std::array<std::size_t, 3> place{group % counts_[0], group / counts_[0] % counts_[1],
+                                         group / counts_[0] / counts_[1]};
+  SampleBox cells;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    last[axis] = std::min(first[axis] + kSubBlock[axis], axes_[axis].size() - 1);
+    cells.begin[axis] = place[axis] * kSubBlock[axis];
+    cells.end[axis] = std::min(cells.begin[axis] + kSubBlock[axis], axes_[axis].size() - 1);
   }
-  return last;
+  return cells;
 }
 
 PointBlocks::Block& PointBlocks::whole() const {
@@ -117,9 +115,7 @@ const std::vector<std::unique_ptr<PointBlocks::Block>>& PointBlocks::parts_of(Bl
 
 void PointBlocks::make_group(std::uint32_t group, const Block& block) const {
   groups_[group].get([&] {
-    const Corner first = first_cell(group);
-    return Group{block.block.field.get(), walk_.degree(block.block),
-                 walk_.cover_at(block.block, first, last_cell(first))};
+    return Group{block.block.field.get(), walk_.degree(block.block), walk_.cover_at(block.block, cells_of(group))};
   });
 }
 
@@ -138,7 +134,7 @@ void PointBlocks::prepare(std::span<const std::uint32_t> groups) const {
       for (const std::unique_ptr<Block>& part : parts) {
         Work& below = next.emplace_back(Work{part.get(), {}});
         std::ranges::copy_if(work.groups, std::back_inserter(below.groups),
-                             [&](std::uint32_t group) { return part->has(first_cell(group)); });
+                             [&](std::uint32_t group) { return part->has(cells_of(group).begin); });
         if (below.groups.empty()) next.pop_back();
       }
       if (parts.empty()) done.push_back(std::move(work));
@@ -153,8 +149,7 @@ void PointBlocks::prepare(std::span<const std::uint32_t> groups) const {
 PointBlocks::Sums::Sums(const PointBlocks& blocks, std::uint32_t group)
     : blocks_(blocks),
       group_(*blocks.groups_[group].if_built()),
-      cover_sums_(
-          blocks.walk_.sums_of(group_.cover, blocks.first_cell(group), blocks.last_cell(blocks.first_cell(group)))) {}
+      cover_sums_(blocks.walk_.sums_of(group_.cover, blocks.cells_of(group))) {}
 
 void PointBlocks::Sums::evaluate(SampleTile& samples, std::span<double> sums) {
   samples.fill_up();

@@ -66,10 +66,8 @@ class PointBlocks {
 
  private:
   struct Block;
-  using Corner = std::array<std::size_t, 3>;
 
-  [[nodiscard]] Corner first_cell(std::uint32_t group) const;
-  [[nodiscard]] Corner last_cell(const Corner& first) const;
+  [[nodiscard]] SampleBox cells_of(std::uint32_t group) const;
   Block& whole() const;
   // The parts of a block; none if it is not divided.
   const std::vector<std::unique_ptr<Block>>& parts_of(Block& block) const;

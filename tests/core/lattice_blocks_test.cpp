@@ -252,23 +252,18 @@ LatticeAxes axes_of(const Lattice& lattice) {
   return axes;
 }
 
-std::vector<double> sums_of(const LatticeBlocks& blocks, const LatticeAxes& axes,
-                            const std::array<SampleRange, 3>& part) {
-  std::vector<double> sums(std::size_t{part[0].size()} * part[1].size() * part[2].size());
+std::vector<double> sums_of(const LatticeBlocks& blocks, const LatticeAxes& axes, const SampleBox& part) {
+  std::vector<double> sums(part.size());
   blocks.for_each_row(axes, part, [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> row) {
-    const std::size_t number = (z - part[2].begin) * part[1].size() + y - part[1].begin;
-    std::ranges::copy(row, sums.begin() + static_cast<std::ptrdiff_t>(number * part[0].size() + x - part[0].begin));
+    const std::size_t number = (z - part.begin[2]) * part.side(1) + y - part.begin[1];
+    std::ranges::copy(row, sums.begin() + static_cast<std::ptrdiff_t>(number * part.side(0) + x - part.begin[0]));
   });
   return sums;
 }
 
 constexpr std::uint32_t kSideOfBlocks = 33;
 
-std::array<SampleRange, 3> whole_of(const LatticeAxes& axes) {
-  std::array<SampleRange, 3> all;
-  for (std::size_t axis = 0; axis < 3; ++axis) all[axis] = {0, static_cast<std::uint32_t>(axes[axis].size())};
-  return all;
-}
+SampleBox whole_of(const LatticeAxes& axes) { return {{0, 0, 0}, {axes[0].size(), axes[1].size(), axes[2].size()}}; }
 
 // Of a box around the dust, with cubic voxels.
 Lattice box_lattice(std::int64_t nx, std::int64_t ny, std::int64_t nz) {
@@ -410,12 +405,12 @@ TEST(LatticeBlocksTest, PartsAndLevelsHaveTheSameBits) {
   Random random(7);
   const std::vector<SolidTriangle> triangles = solid_faces(dust(random, 200)).triangles;
   const LatticeAxes axes = axes_of(cube_lattice(kSideOfBlocks));
-  const std::array<SampleRange, 3> all{{{0, kSideOfBlocks}, {0, kSideOfBlocks}, {0, kSideOfBlocks}}};
+  const SampleBox all = whole_of(axes);
   const std::vector<double> sums = sums_of(LatticeBlocks(triangles, 1e-8, SimdLevel::kBest), axes, all);
   for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2}) {
     EXPECT_EQ(sums_of(LatticeBlocks(triangles, 1e-8, level), axes, all), sums);
   }
-  const std::array<SampleRange, 3> part{{{5, 30}, {15, 17}, {3, 14}}};
+  const SampleBox part{{5, 15, 3}, {30, 17, 14}};
   const std::vector<double> some = sums_of(LatticeBlocks(triangles, 1e-8, SimdLevel::kBest), axes, part);
   for (std::uint32_t z = 3; z < 14; ++z) {
     for (std::uint32_t y = 15; y < 17; ++y) {
@@ -442,7 +437,7 @@ TEST(LatticeBlocksTest, PartsAndLevelsHaveTheSameBitsByBoundaries) {
     const auto x = static_cast<std::uint32_t>(random() % kSideOfBlocks),
                y = static_cast<std::uint32_t>(random() % kSideOfBlocks);
     const auto z = static_cast<std::uint32_t>(random() % kSideOfBlocks);
-    const std::vector<double> one = sums_of(blocks, axes, {{{x, x + 1}, {y, y + 1}, {z, z + 1}}});
+    const std::vector<double> one = sums_of(blocks, axes, {{x, y, z}, {x + 1, y + 1, z + 1}});
     ASSERT_EQ(one[0], sums[(z * kSideOfBlocks + y) * kSideOfBlocks + x]) << x << ' ' << y << ' ' << z;
   }
 }

@@ -348,20 +348,19 @@ void CellPolygons::find_diagonals() {
   }
 }
 
-std::vector<std::uint8_t> polygons_at_sections(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
-                                               const FacePoints& face_points, const CellCreases& creases, double unit) {
-  std::vector<std::uint8_t> found(cells.cells().size(), 0);
+std::vector<std::uint8_t> polygons_at_sections(const SurfaceInCells& surface, const FacePoints& face_points) {
+  std::vector<std::uint8_t> found(surface.cells.cells().size(), 0);
   for (const std::uint64_t face : face_points.section_faces()) {
-    for (const std::uint32_t cell : cells_at_face(cells, static_cast<std::uint32_t>(face / 16), face % 16))
+    for (const std::uint32_t cell : cells_at_face(surface.cells, static_cast<std::uint32_t>(face / 16), face % 16))
       found[cell] = 1;
   }
   parallel_for(found.size(), 512, [&](std::size_t begin, std::size_t end) {
-    CreasesHere creases_here(creases);
-    CornerCells corners(cells);
-    CellPolygons polygons(cells, edge_points, face_points, creases_here, corners, unit);
+    CreasesHere creases(surface.creases);
+    CornerCells corners(surface.cells);
+    CellPolygons polygons(surface, face_points, creases, corners);
     for (auto cell = static_cast<std::uint32_t>(begin); cell < end; ++cell) {
       if (found[cell] == 0) continue;
-      creases_here.enter(cell);
+      creases.enter(cell);
       corners.enter(cell);
       found[cell] = polygons.find(cell) ? 1 : 0;
     }

@@ -10,6 +10,7 @@
 #include "core/surface/edge_points.h"
 #include "core/surface/face_points.h"
 #include "core/surface/surface_cells.h"
+#include "core/surface/surface_in_cells.h"
 #include "core/surface/surface_mesh.h"
 
 namespace raycone {
@@ -59,15 +60,14 @@ class CellPolygons {
  public:
   static constexpr std::uint32_t kApex = 0xFFFFFFFF;  // the number of the point where planes meet in the cell
 
-  // `unit`: the margin that points are kept off what they may not reach, world units. All of them must outlive this.
-  CellPolygons(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const FacePoints& face_points,
-               CreasesHere& creases, CornerCells& corners, double unit)
-      : cells_(cells),
-        edge_points_(edge_points),
+  // What `surface` refers to and the others must outlive this.
+  CellPolygons(const SurfaceInCells& surface, const FacePoints& face_points, CreasesHere& creases, CornerCells& corners)
+      : cells_(surface.cells),
+        edge_points_(surface.edge_points),
         face_points_(face_points),
         creases_(creases),
         corners_(corners),
-        unit_(unit) {}
+        unit_(surface.least_margin()) {}
 
   // Whether the surface is such polygons in a cell, which `creases` and `corners` have entered.
   [[nodiscard]] bool find(std::uint32_t cell);
@@ -123,7 +123,7 @@ class CellPolygons {
   const FacePoints& face_points_;
   CreasesHere& creases_;
   CornerCells& corners_;
-  double unit_;
+  double unit_;  // the margin that points are kept off what they may not reach, world units
 
   std::uint32_t cell_ = 0;
   std::array<LoopCorner, 2 * kMostSteps> loop_{};
@@ -142,10 +142,8 @@ class CellPolygons {
 
 // Of each cell at a face with several points, whether the surface is polygons there: 1; 0 for all others. The same for
 // any number of threads.
-[[nodiscard]] std::vector<std::uint8_t> polygons_at_sections(const SurfaceCells& cells,
-                                                             std::span<const EdgePoint> edge_points,
-                                                             const FacePoints& face_points, const CellCreases& creases,
-                                                             double unit);
+[[nodiscard]] std::vector<std::uint8_t> polygons_at_sections(const SurfaceInCells& surface,
+                                                             const FacePoints& face_points);
 
 // A polygon cut into triangles at one corner, of which the worst is best: the number of that corner.
 [[nodiscard]] std::size_t best_fan(std::span<const Vec3> polygon);

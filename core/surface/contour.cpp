@@ -31,17 +31,13 @@ struct Loop {
 
 class CellContour {
  public:
-  CellContour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const FacePoints& face_points,
-              const CellCreases& creases, double tolerance, double margin, ContourPart& part, SparePoints* spare)
-      : cells_(cells),
-        edge_points_(edge_points),
+  CellContour(const SurfaceInCells& surface, const FacePoints& face_points, ContourPart& part, SparePoints* spare)
+      : surface_(surface),
         face_points_(face_points),
-        creases_(creases),
-        corner_cells_(cells),
-        polygons_(cells, edge_points, face_points, creases_, corner_cells_, margin * cells.lattice().least_spacing()),
+        creases_(surface.creases),
+        corner_cells_(surface.cells),
+        polygons_(surface, face_points, creases_, corner_cells_),
         spare_(spare),
-        tolerance_(tolerance),
-        margin_(margin),
         part_(part) {}
 
   void add(std::uint32_t cell) {
@@ -66,12 +62,12 @@ class CellContour {
     bool on_mesh;
   };
 
-  [[nodiscard]] bool is_inside(unsigned corner) const { return cells_.cells()[cell_].is_inside(corner); }
+  [[nodiscard]] bool is_inside(unsigned corner) const { return surface_.cells.cells()[cell_].is_inside(corner); }
   [[nodiscard]] std::uint32_t cell_of(unsigned corner) { return corner_cells_.of(corner); }
   void add_edge(Loop& loop, unsigned a, unsigned b) {
     const unsigned low = std::min(a, b), high = std::max(a, b);
-    const std::uint32_t edge = cells_.cells()[cell_of(low)].edge(high ^ low);
-    loop.add(edge, &edge_points_[edge]);
+    const std::uint32_t edge = surface_.cells.cells()[cell_of(low)].edge(high ^ low);
+    loop.add(edge, &surface_.edge_points[edge]);
   }
   // The points of a face between its edges from `common` to `last` and to `next`.
   void add_face(Loop& loop, unsigned common, unsigned last, unsigned next) {
@@ -86,7 +82,7 @@ class CellContour {
     }
     const auto [first, count] = face_points_.find(cell_of(corners[0]), face);
     for (std::uint32_t n = 0; n < count; ++n)
-      loop.add(cells_.edges() + first + (last < next ? n : count - 1 - n), nullptr);
+      loop.add(surface_.cells.edges() + first + (last < next ? n : count - 1 - n), nullptr);
     loop.has_face_point = loop.has_face_point || count > 0;
   }
 
@@ -97,13 +93,14 @@ class CellContour {
   [[nodiscard]] Loop loop_of(const kuhn::Tetrahedron& tetrahedron);
   [[nodiscard]] Vec3 position(const LoopCorner& corner) const {
     if (corner.edge_point) return corner.edge_point->position;
-    return corner.vertex < kFirstApex ? face_points_.positions()[corner.vertex - cells_.edges()]
+    return corner.vertex < kFirstApex ? face_points_.positions()[corner.vertex - surface_.cells.edges()]
                                       : part_.apexes[corner.vertex - kFirstApex];
   }
   // What the surface is of between two corners of a loop, one of them a face point.
   [[nodiscard]] const EdgePoint& piece_between(const LoopCorner& a, const LoopCorner& b) const {
     if (a.edge_point) return *a.edge_point;
-    return b.edge_point ? *b.edge_point : face_points_.piece_behind(std::min(a.vertex, b.vertex) - cells_.edges());
+    return b.edge_point ? *b.edge_point
+                        : face_points_.piece_behind(std::min(a.vertex, b.vertex) - surface_.cells.edges());
   }
   [[nodiscard]] Vec3 normal_of(const EdgePoint& point) const { return creases_.all_creases().normal_of(point.source); }
   void fill(const Loop& loop, std::size_t number);
@@ -118,14 +115,12 @@ class CellContour {
 
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-  const SurfaceCells& cells_;
-  std::span<const EdgePoint> edge_points_;
+  SurfaceInCells surface_;
   const FacePoints& face_points_;
   CreasesHere creases_;
   CornerCells corner_cells_;
   CellPolygons polygons_;
   SparePoints* spare_;
-  double tolerance_, margin_;
   ContourPart& part_;
   std::uint32_t cell_ = 0;
   std::array<std::uint32_t, kuhn::kFaces.size() - kuhn::kFacesBetweenCells> within_{};  // points of its own faces
@@ -136,7 +131,7 @@ void CellContour::find_points_within() {
   for (std::size_t n = 0; n < within_.size(); ++n) {
     within_[n] = kNone;
     const std::size_t face = kuhn::kFacesBetweenCells + n;
-    const auto point = face_point(cells_, edge_points_, cell_, face, creases_, tolerance_, {margin_});
+    const auto point = face_point(surface_, cell_, face, creases_);
     if (!point) continue;
     within_[n] = kFirstApex + static_cast<std::uint32_t>(part_.apexes.size());
     part_.apexes.push_back(*point);
@@ -145,7 +140,7 @@ void CellContour::find_points_within() {
 }
 
 void CellContour::add_polygons() {
-  const SurfaceCell& cell = cells_.cells()[cell_];
+  const SurfaceCell& cell = surface_.cells.cells()[cell_];
   if (cell.is_inside(0) != cell.is_inside(kuhn::kCorners - 1)) spare_->within[cell.edge(kuhn::kCorners - 1)] = 1;
   for (const DiagonalPoint& point : polygons_.diagonals()) {
     if (point.is_inline) (point.is_above ? spare_->above : spare_->below)[point.edge] = 1;
@@ -303,7 +298,7 @@ std::optional<Vec3> CellContour::crease_exit(const Corners& corners, const kuhn:
 CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) {
   Corners corners;
   std::ranges::transform(tetrahedron.corners, corners.begin(),
-                         [&](unsigned corner) { return cells_.corner(cells_.cells()[cell_], corner); });
+                         [&](unsigned corner) { return surface_.cells.corner(surface_.cells.cells()[cell_], corner); });
   std::array<PointOnPlane, std::tuple_size_v<decltype(loop.corners)>> planes;
   std::size_t count = 0, face_points = 0;
   Vec3 of_all, of_faces;
@@ -323,7 +318,7 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
   const Vec3 middle = face_points > 1 ? (1.0 / static_cast<double>(face_points)) * of_faces
                                       : (1.0 / static_cast<double>(loop.size)) * of_all;
   const BarycentricCoordinates within(corners);
-  std::optional<Vec3> on_crease = creases_.nearest_end_within(within, middle, margin_);
+  std::optional<Vec3> on_crease = creases_.nearest_end_within(within, middle, surface_.margins.inner);
   if (!on_crease && face_points == 1) on_crease = crease_exit(corners, tetrahedron, middle);
   if (!on_crease) on_crease = creases_.nearest_within(within, middle);
   // Points of sections may be on fine ones alone.
@@ -332,20 +327,19 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
   const bool on_mesh = on_crease.has_value();
   const Vec3 target = on_crease.value_or(middle);
   // There it is in all planes as well as numbers can tell.
-  const std::optional<Vec3> meeting = common_point(std::span(planes).first(count), target, tolerance_);
+  const std::optional<Vec3> meeting = common_point(std::span(planes).first(count), target, surface_.tolerance);
   const auto off_square = [&] { return dot(*meeting - target, *meeting - target); };
-  const bool meets = meeting && within.is_within(*meeting, margin_) &&
-                     (!on_mesh || off_square() <= kSamePlace * tolerance_ * tolerance_);
-  return {corners[0] + (meets ? *meeting : within.moved_within(target, margin_)), on_mesh};
+  const bool meets = meeting && within.is_within(*meeting, surface_.margins.inner) &&
+                     (!on_mesh || off_square() <= kSamePlace * surface_.tolerance * surface_.tolerance);
+  return {corners[0] + (meets ? *meeting : within.moved_within(target, surface_.margins.inner)), on_mesh};
 }
 
 }  // namespace
 
-ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
-                         const FacePoints& face_points, const CellCreases& creases, double tolerance,
-                         const SurfaceMargins& margins, ContourCells kind) {
+ContouredSurface contour(const SurfaceInCells& surface, const FacePoints& face_points, ContourCells kind) {
+  const std::span<const EdgePoint> edge_points = surface.edge_points;
   check_point_numbers(edge_points.size() + face_points.positions().size());
-  const std::size_t count = cells.cells().size();
+  const std::size_t count = surface.cells.cells().size();
   constexpr std::size_t kCellsPerPart = 512;
   std::vector<ContourPart> parts((count + kCellsPerPart - 1) / kCellsPerPart);
   SparePoints spare;
@@ -355,8 +349,7 @@ ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> e
     spare.faces.resize(face_points.positions().size());
   }
   parallel_for_each(parts.size(), [&](std::size_t part) {
-    CellContour contour(cells, edge_points, face_points, creases, tolerance, margins.inner, parts[part],
-                        kind == ContourCells::kPolygons ? &spare : nullptr);
+    CellContour contour(surface, face_points, parts[part], kind == ContourCells::kPolygons ? &spare : nullptr);
     for (std::size_t cell = part * kCellsPerPart; cell < std::min((part + 1) * kCellsPerPart, count); ++cell) {
       contour.add(static_cast<std::uint32_t>(cell));
     }

@@ -2,13 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
-#include "core/surface/edge_points.h"
 #include "core/surface/face_points.h"
-#include "core/surface/surface_cells.h"
+#include "core/surface/surface_in_cells.h"
 #include "core/surface/surface_mesh.h"
 
 namespace raycone {
@@ -38,8 +36,7 @@ inline constexpr std::uint64_t kWholeCell = std::uint64_t{1} << 63, kFaceOfCell 
 // has. Where `face_points` are sections, points of faces within cells are looked for where they are needed, and are
 // among the apexes. Fronts look from inside to outside. The same for any number of threads. docs/method.md, "Surfaces",
 // shows that the triangles meet nowhere but in shared vertices and edges.
-[[nodiscard]] ContouredSurface contour(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
-                                       const FacePoints& face_points, const CellCreases& creases, double tolerance,
-                                       const SurfaceMargins& margins, ContourCells kind = ContourCells::kTetrahedra);
+[[nodiscard]] ContouredSurface contour(const SurfaceInCells& surface, const FacePoints& face_points,
+                                       ContourCells kind = ContourCells::kTetrahedra);
 
 }  // namespace raycone

@@ -39,8 +39,10 @@ struct FaceEdges {
 };
 
 // Where their points are of one source, the surface is not bent there, and nobody asks for more: nothing, then.
-std::optional<FaceEdges> edges_of_two(const SurfaceCells& cells, std::span<const EdgePoint> points, std::uint32_t n,
-                                      const kuhn::FaceDirections& face, const CellCreases& creases) {
+std::optional<FaceEdges> edges_of_two(const SurfaceInCells& surface, std::uint32_t n,
+                                      const kuhn::FaceDirections& face) {
+  const SurfaceCells& cells = surface.cells;
+  const std::span<const EdgePoint> points = surface.edge_points;
   const SurfaceCell& cell = cells.cells()[n];
   const bool low = cell.is_inside(0), middle = cell.is_inside(face.first), high = cell.is_inside(face.second);
   if (low == middle && low == high) return std::nullopt;
@@ -55,7 +57,7 @@ std::optional<FaceEdges> edges_of_two(const SurfaceCells& cells, std::span<const
   if (mixed[0]->source == mixed[1]->source) return std::nullopt;
   return FaceEdges{{cells.corner(cell, 0), cells.corner(cell, face.first), cells.corner(cell, face.second)},
                    mixed,
-                   {creases.normal_of(mixed[0]->source), creases.normal_of(mixed[1]->source)}};
+                   {surface.creases.normal_of(mixed[0]->source), surface.creases.normal_of(mixed[1]->source)}};
 }
 
 // Barycentric coordinates that are within the face, but for rounding, are moved into it.
@@ -149,8 +151,6 @@ double fine_tolerance(const Lattice& lattice) {
   return std::max(kVoxels * lattice.least_spacing(), kDouble * largest_coordinate(lattice));
 }
 
-double largest_margin(const SurfaceCells& cells, double margin) { return margin * cells.lattice().largest_spacing(); }
-
 bool is_single(double x) { return std::abs(x) < 0x1p127 && static_cast<double>(static_cast<float>(x)) == x; }
 
 // As text has it of numbers in single precision, or of others that it rounds.
@@ -212,32 +212,30 @@ std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint3
   return {cells.first_from(cells.row_begin(j, k), cells.row_end(j, k), i), cell};
 }
 
-std::optional<Vec3> face_point(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, std::uint32_t cell,
-                               std::size_t face, CreasesHere& creases, double tolerance,
-                               const SurfaceMargins& margins) {
-  const auto edges = edges_of_two(cells, edge_points, cell, kuhn::kFaces[face], creases.all_creases());
-  if (!edges || !disagree(*edges, tolerance, margins.inner)) return std::nullopt;
-  const double unit = largest_margin(cells, margins.inner);
-  const std::optional<Vec3> meeting = meeting_on_crease(*edges, creases, tolerance, unit, margins.inner);
-  return meeting ? meeting : crease_point(*edges, creases, margins.inner);
+std::optional<Vec3> face_point(const SurfaceInCells& surface, std::uint32_t cell, std::size_t face,
+                               CreasesHere& creases) {
+  const double margin = surface.margins.inner;
+  const auto edges = edges_of_two(surface, cell, kuhn::kFaces[face]);
+  if (!edges || !disagree(*edges, surface.tolerance, margin)) return std::nullopt;
+  const std::optional<Vec3> meeting =
+      meeting_on_crease(*edges, creases, surface.tolerance, surface.largest_margin(), margin);
+  return meeting ? meeting : crease_point(*edges, creases, margin);
 }
 
-FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const CellCreases& creases,
-                       double tolerance, const SurfaceMargins& margins, PointsOfFaces kind)
-    : kind_(kind) {
+FacePoints::FacePoints(const SurfaceInCells& surface, PointsOfFaces kind) : kind_(kind) {
   constexpr std::size_t kCellsPerPart = 512;
-  std::vector<FacePoints> parts((cells.cells().size() + kCellsPerPart - 1) / kCellsPerPart);
+  const std::size_t count = surface.cells.cells().size();
+  std::vector<FacePoints> parts((count + kCellsPerPart - 1) / kCellsPerPart);
   parallel_for(parts.size(), 1, [&](std::size_t begin, std::size_t end) {
-    CreasesHere creases_here(creases);
-    const std::size_t last_cell = std::min(end * kCellsPerPart, cells.cells().size());
+    CreasesHere creases(surface.creases);
+    const std::size_t last_cell = std::min(end * kCellsPerPart, count);
     for (auto cell = static_cast<std::uint32_t>(begin * kCellsPerPart); cell < last_cell; ++cell) {
-      creases_here.enter(cell);
+      creases.enter(cell);
       FacePoints& part = parts[cell / kCellsPerPart];
       for (std::size_t face = 0; face < kuhn::kFaces.size(); ++face) {
         if (kind == PointsOfFaces::kSections) {
-          if (face < kuhn::kFacesBetweenCells)
-            part.add_section(cells, edge_points, cell, face, creases_here, creases, tolerance, margins);
-        } else if (const auto one = face_point(cells, edge_points, cell, face, creases_here, tolerance, margins)) {
+          if (face < kuhn::kFacesBetweenCells) part.add_section(surface, cell, face, creases);
+        } else if (const auto one = face_point(surface, cell, face, creases)) {
           part.add(std::uint64_t{16} * cell + face, *one);
         }
       }
@@ -246,28 +244,27 @@ FacePoints::FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edg
   join(parts);
 }
 
-void FacePoints::add_section(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, std::uint32_t cell,
-                             std::size_t face, CreasesHere& creases_here, const CellCreases& creases, double tolerance,
-                             const SurfaceMargins& margins) {
-  const auto edges = edges_of_two(cells, edge_points, cell, kuhn::kFaces[face], creases);
+void FacePoints::add_section(const SurfaceInCells& surface, std::uint32_t cell, std::size_t face,
+                             CreasesHere& creases) {
+  const double tolerance = surface.tolerance, margin = surface.margins.inner, unit = surface.largest_margin();
+  const auto edges = edges_of_two(surface, cell, kuhn::kFaces[face]);
   if (!edges) return;
-  const double fine = std::min(tolerance, fine_tolerance(cells.lattice()));
-  if (!disagree(*edges, fine, margins.inner)) return;
-  const double unit = largest_margin(cells, margins.inner);
+  const double fine = std::min(tolerance, fine_tolerance(surface.cells.lattice()));
+  if (!disagree(*edges, fine, margin)) return;
   const std::uint64_t number = std::uint64_t{16} * cell + face;
-  const bool is_bent = disagree(*edges, tolerance, margins.inner);
+  const bool is_bent = disagree(*edges, tolerance, margin);
   std::optional<Vec3> one;
-  if (is_bent) one = meeting_on_crease(*edges, creases_here, tolerance, unit, margins.inner, CreaseKinds::kNotFine);
+  if (is_bent) one = meeting_on_crease(*edges, creases, tolerance, unit, margin, CreaseKinds::kNotFine);
   if (one) {
     add(number, *one);
     return;
   }
   PointsOfFace more;
-  one = meeting_on_crease(*edges, creases_here, fine, unit, margins.inner, CreaseKinds::kAll);
+  one = meeting_on_crease(*edges, creases, fine, unit, margin, CreaseKinds::kAll);
   if (one) {
     more.add(*one, 0);
   } else {
-    more = section_points(*edges, creases_here, unit, margins.inner);
+    more = section_points(*edges, creases, unit, margin);
   }
   if (more.size > 0) sections_.push_back(number);
   for (std::size_t n = 0; n < more.size; ++n) {
@@ -280,7 +277,7 @@ void FacePoints::add_section(const SurfaceCells& cells, std::span<const EdgePoin
     add(number, position);
   }
   if (more.size > 0 || !is_bent) return;
-  one = crease_point(*edges, creases_here, margins.inner);
+  one = crease_point(*edges, creases, margin);
   if (one) add(number, *one);
 }
 
@@ -349,33 +346,30 @@ std::size_t FacePoints::end_of_face(std::size_t point) const {
   return point;
 }
 
-void FacePoints::keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceCells& cells,
-                                  std::span<const EdgePoint> edge_points, const CellCreases& creases, double tolerance,
-                                  const SurfaceMargins& margins) {
+void FacePoints::keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceInCells& surface) {
   constexpr std::size_t kPointsPerPart = 1024;
   std::vector<FacePoints> parts((faces_.size() + kPointsPerPart - 1) / kPointsPerPart);
   const auto is_of_polygons = [&](std::uint32_t cell) { return cells_of_polygons[cell] != 0; };
-  const auto add_face_to = [&](FacePoints& part, CreasesHere& creases_here, std::size_t begin, std::size_t end) {
+  const auto add_face_to = [&](FacePoints& part, CreasesHere& creases, std::size_t begin, std::size_t end) {
     const std::uint64_t face = faces_[begin];
     const auto cell = static_cast<std::uint32_t>(face / 16);
     const bool is_section = std::ranges::binary_search(sections_, face);
-    if (!is_section || std::ranges::any_of(cells_at_face(cells, cell, face % 16), is_of_polygons)) {
+    if (!is_section || std::ranges::any_of(cells_at_face(surface.cells, cell, face % 16), is_of_polygons)) {
       if (is_section) part.sections_.push_back(face);
       part.add_face(*this, begin, end);
       return;
     }
-    creases_here.enter(cell);
-    const auto one = face_point(cells, edge_points, cell, face % 16, creases_here, tolerance, margins);
-    if (one) part.add(face, *one);
+    creases.enter(cell);
+    if (const auto one = face_point(surface, cell, face % 16, creases)) part.add(face, *one);
   };
   parallel_for(parts.size(), 1, [&](std::size_t first, std::size_t last) {
-    CreasesHere creases_here(creases);
+    CreasesHere creases(surface.creases);
     for (std::size_t n = first; n < last; ++n) {
       std::size_t point = n * kPointsPerPart;
       if (point > 0 && faces_[point] == faces_[point - 1]) point = end_of_face(point);
       while (point < std::min((n + 1) * kPointsPerPart, faces_.size())) {
         const std::size_t end = end_of_face(point);
-        add_face_to(parts[n], creases_here, point, end);
+        add_face_to(parts[n], creases, point, end);
         point = end;
       }
     }

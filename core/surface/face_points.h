@@ -4,13 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
 #include "core/surface/cell_creases.h"
 #include "core/surface/edge_points.h"
 #include "core/surface/surface_cells.h"
+#include "core/surface/surface_in_cells.h"
 
 namespace raycone {
 
@@ -30,9 +30,8 @@ enum class PointsOfFaces : std::uint8_t {
 
 // Where the planes at a mixed face's two points disagree, or just one of these is in a hole: a point of a crease in the
 // face, if there is one; that where the planes meet, else the one farthest from the straight line.
-[[nodiscard]] std::optional<Vec3> face_point(const SurfaceCells& cells, std::span<const EdgePoint> edge_points,
-                                             std::uint32_t cell, std::size_t face, CreasesHere& creases,
-                                             double tolerance, const SurfaceMargins& margins);
+[[nodiscard]] std::optional<Vec3> face_point(const SurfaceInCells& surface, std::uint32_t cell, std::size_t face,
+                                             CreasesHere& creases);
 
 class FacePoints {
  public:
@@ -40,8 +39,7 @@ class FacePoints {
   // to the other, if these are several, and go ahead all the way; and where planes meet on fine creases, or are one but
   // for what single precision rounds, points of these. Points are kept inside the face by the margin. They depend on
   // the face, its two points and the mesh alone, so that both its cells agree.
-  FacePoints(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, const CellCreases& creases,
-             double tolerance, const SurfaceMargins& margins, PointsOfFaces kind = PointsOfFaces::kOne);
+  explicit FacePoints(const SurfaceInCells& surface, PointsOfFaces kind = PointsOfFaces::kOne);
   FacePoints() = default;
   // These points, of faces numbered 16 * cell + face, each once, increasing.
   FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions);
@@ -65,9 +63,7 @@ class FacePoints {
   [[nodiscard]] const std::vector<std::uint64_t>& section_faces() const { return sections_; }
   // Leaves these only where that pays: where one of the face's cells is in `cells_of_polygons`, which has a 1
   // for each such cell. The others have the one that face_point() finds.
-  void keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceCells& cells,
-                        std::span<const EdgePoint> edge_points, const CellCreases& creases, double tolerance,
-                        const SurfaceMargins& margins);
+  void keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceInCells& surface);
 
   // All but those of faces that have one of these numbers.
   [[nodiscard]] FacePoints without(const std::vector<bool>& dropped) const;
@@ -81,9 +77,7 @@ class FacePoints {
     faces_.push_back(face);
     positions_.push_back(position);
   }
-  void add_section(const SurfaceCells& cells, std::span<const EdgePoint> edge_points, std::uint32_t cell,
-                   std::size_t face, CreasesHere& creases_here, const CellCreases& creases, double tolerance,
-                   const SurfaceMargins& margins);
+  void add_section(const SurfaceInCells& surface, std::uint32_t cell, std::size_t face, CreasesHere& creases);
   // The points of one face: `begin` to `end` of others.
   void add_face(const FacePoints& of, std::size_t begin, std::size_t end);
   [[nodiscard]] std::size_t end_of_face(std::size_t point) const;

@@ -71,7 +71,7 @@ class SurfaceMaker {
         }
         if (first.made) return *std::move(first.made);
       }
-      FacePoints sharp(cells_, points_, creases_, tolerance_, margins);
+      FacePoints sharp(in_cells(margins));
       for (int round = 0; round < kRounds; ++round) {
         if (may_use_polygons()) {
           last = attempt(sharp, margins, true, ContourCells::kPolygons);
@@ -135,16 +135,19 @@ class SurfaceMaker {
     return made;
   }
 
+  [[nodiscard]] SurfaceInCells in_cells(const SurfaceMargins& margins) const {
+    return {cells_, points_, creases_, tolerance_, margins};
+  }
+
   // What thickens has points off the mesh.
   [[nodiscard]] bool may_use_polygons() const { return !(options_.thickness > 0.0); }
 
   // Several points of a face help where the surface is polygons then. Cones of tetrahedra would only have more
   // triangles.
   [[nodiscard]] FacePoints points_of_sections(const SurfaceMargins& margins) const {
-    FacePoints sharp(cells_, points_, creases_, tolerance_, margins, PointsOfFaces::kSections);
-    const double unit = margins.inner * inside_.lattice().least_spacing();
-    const std::vector<std::uint8_t> pays = polygons_at_sections(cells_, points_, sharp, creases_, unit);
-    sharp.keep_sections_at(pays, cells_, points_, creases_, tolerance_, margins);
+    const SurfaceInCells surface = in_cells(margins);
+    FacePoints sharp(surface, PointsOfFaces::kSections);
+    sharp.keep_sections_at(polygons_at_sections(surface, sharp), surface);
     return sharp;
   }
 
@@ -157,8 +160,7 @@ class SurfaceMaker {
   Attempt attempt(const FacePoints& sharp, const SurfaceMargins& margins, bool sharpens,
                   ContourCells kind = ContourCells::kTetrahedra) {
     enter("joining them by triangles");
-    auto [surface, tetrahedra, first_apex, fewer] =
-        contour(cells_, points_, sharp, creases_, tolerance_, margins, kind);
+    auto [surface, tetrahedra, first_apex, fewer] = contour(in_cells(margins), sharp, kind);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     Attempt result;
     const ContourPoints made_of{points_, sharp.positions(), std::span(surface.mesh.vertices).subspan(first_apex),

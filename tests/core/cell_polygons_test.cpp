@@ -67,12 +67,11 @@ struct Cells {
         creases(mesh, normals, triangles, cells),
         points(edge_points(mesh, {WindingNumberEvaluator(mesh), Rule{}}, cells, triangles, kMargins)),
         tolerance(plane_tolerance(mesh, lattice)) {
-    face_points = FacePoints(cells, points, creases, tolerance, kMargins, kind);
+    face_points = FacePoints(in_cells(), kind);
   }
 
-  [[nodiscard]] ContouredSurface contoured(ContourCells kind) const {
-    return contour(cells, points, face_points, creases, tolerance, kMargins, kind);
-  }
+  [[nodiscard]] SurfaceInCells in_cells() const { return {cells, points, creases, tolerance, kMargins}; }
+  [[nodiscard]] ContouredSurface contoured(ContourCells kind) const { return contour(in_cells(), face_points, kind); }
   [[nodiscard]] std::uint64_t misplaced(const ContouredSurface& of) const {
     const std::span apexes = std::span(of.surface.mesh.vertices).subspan(of.first_apex);
     return misplaced_vertices({points, face_points.positions(), apexes}, cells, face_points, of.tetrahedra, kMargins);
@@ -158,7 +157,7 @@ TEST(CellPolygons, AreFoundHoweverAPlanePartsACell) {
     const Cells cells(mesh, lattice);
     CreasesHere creases(cells.creases);
     CornerCells corners(cells.cells);
-    CellPolygons polygons(cells.cells, cells.points, cells.face_points, creases, corners, 0x1p-30 * 2.0);
+    CellPolygons polygons(cells.in_cells(), cells.face_points, creases, corners);
     for (std::uint32_t cell = 0; cell < cells.cells.cells().size(); ++cell) {
       std::vector<std::int32_t> sources;
       std::vector<Vec3> normals;
@@ -233,10 +232,8 @@ TEST(CellPolygons, FollowBothEdgesOfAStripThroughAFace) {
     const Cells one(mesh, lattice_around(mesh, h));
     Cells several(mesh, lattice_around(mesh, h), PointsOfFaces::kSections);
     EXPECT_GT(several.face_points.section_faces().size(), 10U);
-    const std::vector<std::uint8_t> found =
-        polygons_at_sections(several.cells, several.points, several.face_points, several.creases, 0x1p-30 * h);
-    several.face_points.keep_sections_at(found, several.cells, several.points, several.creases, several.tolerance,
-                                         kMargins);
+    const std::vector<std::uint8_t> found = polygons_at_sections(several.in_cells(), several.face_points);
+    several.face_points.keep_sections_at(found, several.in_cells());
     EXPECT_GT(several.face_points.section_faces().size(), 8U);
     const ContouredSurface before = one.contoured(ContourCells::kPolygons);
     const ContouredSurface after = several.contoured(ContourCells::kPolygons);
@@ -323,8 +320,7 @@ TEST(CellPolygons, AreWhatSectionsAreFor) {
   Cells several(mesh, lattice_around(mesh, 0.08), PointsOfFaces::kSections);
   EXPECT_FALSE(several.face_points.section_faces().empty());
   const std::vector<std::uint8_t> none(several.cells.cells().size(), 0);
-  several.face_points.keep_sections_at(none, several.cells, several.points, several.creases, several.tolerance,
-                                       kMargins);
+  several.face_points.keep_sections_at(none, several.in_cells());
   EXPECT_TRUE(several.face_points.section_faces().empty());
   std::vector<std::uint64_t> between;
   std::vector<Vec3> positions;

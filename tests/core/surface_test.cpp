@@ -127,7 +127,7 @@ SurfaceFaults faults_of_random_surface(const NodeSet& nodes, Random& random, boo
   const SurfaceCells cells(nodes);
   const std::vector<EdgePoint> points = random_edge_points(cells, random, !with_face_points);
   const FacePoints face_points = with_face_points ? random_face_points(cells, random) : FacePoints();
-  const auto [surface, tetrahedra, first_apex, fewer] = contour(cells, points, face_points, {}, 0.0, kMargins);
+  const auto [surface, tetrahedra, first_apex, fewer] = contour({cells, points, {}, 0.0, kMargins}, face_points);
   SurfaceFaults faults = faults_of(surface.mesh, nodes);
   faults.places = misplaced(surface.mesh.vertices, cells, face_points, tetrahedra);
   return faults;
@@ -160,7 +160,7 @@ TEST(Surface, IsFreeOfIntersectionsByTheDefinition) {
     for (const bool with_face_points : {false, true}) {
       const std::vector<EdgePoint> points = random_edge_points(cells, random, !with_face_points);
       const FacePoints face_points = with_face_points ? random_face_points(cells, random) : FacePoints();
-      TriangleMesh mesh = contour(cells, points, face_points, {}, 0.0, kMargins).surface.mesh;
+      TriangleMesh mesh = contour({cells, points, {}, 0.0, kMargins}, face_points).surface.mesh;
       ASSERT_TRUE(test::exact_self_intersections(mesh).empty()) << label;
       if (label > 1) continue;
       const Vec3 across = mesh.vertices[mesh.triangles.back()[0]];
@@ -247,7 +247,7 @@ TEST(SurfaceCertificate, FindsEachFault) {
   const DefaultFloatingPoint guard;
   const NodeSet nodes = nodes_where(lattice_of(5), [](auto i, auto j, auto k) { return i + j + k < 6; });
   const SurfaceCells cells(nodes);
-  const SurfaceMesh surface = contour(cells, random_edge_points(cells, random, true), {}, {}, 0.0, kMargins).surface;
+  const SurfaceMesh surface = contour({cells, random_edge_points(cells, random, true), {}, 0.0, kMargins}, {}).surface;
   ASSERT_TRUE(faults_of(surface.mesh, nodes).none());
   TriangleMesh open = surface.mesh;
   open.triangles.pop_back();
@@ -276,7 +276,7 @@ TEST(SurfaceCertificate, FindsFaultsNearAChange) {
   for (int round = 0; round < 400; ++round) {
     const NodeSet nodes = nodes_where(lattice, [&](auto i, auto j, auto k) { return i + j + k < 9 + round % 4; });
     const SurfaceCells cells(nodes);
-    TriangleMesh mesh = contour(cells, random_edge_points(cells, random, false), {}, {}, 0.0, kMargins).surface.mesh;
+    TriangleMesh mesh = contour({cells, random_edge_points(cells, random, false), {}, 0.0, kMargins}, {}).surface.mesh;
     const SurfaceEdit change = random_change(mesh, random, round % 2 == 0, round % 4 < 2 ? 0.3 : 3.0);
     change.apply(mesh);
     const SurfaceFaults all = faults_of(compacted(mesh.vertices, without_gone(mesh).triangles), nodes);
@@ -365,7 +365,7 @@ TEST(SurfaceCertificate, FindsVerticesOutOfPlace) {
   const SurfaceCells cells(nodes);
   const FacePoints face_points = random_face_points(cells, random);
   const auto [surface, tetrahedra, first_apex, fewer] =
-      contour(cells, random_edge_points(cells, random, false), face_points, {}, 0.0, kMargins);
+      contour({cells, random_edge_points(cells, random, false), {}, 0.0, kMargins}, face_points);
   const std::vector<Vec3>& vertices = surface.mesh.vertices;
   EXPECT_EQ(misplaced(vertices, cells, face_points, tetrahedra), 0U);
   EXPECT_EQ(first_apex, cells.edges() + face_points.positions().size());

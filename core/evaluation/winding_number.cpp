@@ -47,6 +47,7 @@ std::uint64_t WindingNumberEvaluator::exterior_edges() const {
 
 const Accuracy& WindingNumberEvaluator::asked_accuracy() const { return implementation_->scaled().options().accuracy; }
 
+// Measured on open meshes at 128 to 512 samples along an axis. No side depends on it.
 double tolerance_for_sides(const Rule& rule) { return thresholds_to_settle(rule).empty() ? 3e-5 : 1e-6; }
 
 double WindingNumberEvaluator::doubt() const { return implementation_->scaled().doubt(); }

@@ -351,7 +351,7 @@ void CellPolygons::find_diagonals() {
 std::vector<std::uint8_t> polygons_at_sections(const SurfaceInCells& surface, const FacePoints& face_points) {
   std::vector<std::uint8_t> found(surface.cells.cells().size(), 0);
   for (const std::uint64_t face : face_points.section_faces()) {
-    for (const std::uint32_t cell : cells_at_face(surface.cells, static_cast<std::uint32_t>(face / 16), face % 16))
+    for (const std::uint32_t cell : cells_at_face(surface.cells, cell_of_face(face), face_in_cell(face)))
       found[cell] = 1;
   }
   parallel_for(found.size(), 512, [&](std::size_t begin, std::size_t end) {

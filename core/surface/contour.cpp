@@ -135,7 +135,7 @@ void CellContour::find_points_within() {
     if (!point) continue;
     within_[n] = kFirstApex + static_cast<std::uint32_t>(part_.apexes.size());
     part_.apexes.push_back(*point);
-    part_.tetrahedra.push_back(kFaceOfCell | (std::uint64_t{16} * cell_ + face));
+    part_.tetrahedra.push_back(kFaceOfCell | number_of_face(cell_, face));
   }
 }
 

@@ -24,8 +24,8 @@ enum class ContourCells : std::uint8_t {
   kPolygons,    // not those that CellPolygons finds polygons in
 };
 
-// In the place of a tetrahedron, and these bits beside: a cell, of which the apex may be in any; or 16 * cell + a face
-// within it, as in kuhn::kFaces, of which it is the point.
+// In the place of a tetrahedron, and these bits beside: a cell, of which the apex may be in any; or number_of_face(),
+// of which it is the point.
 inline constexpr std::uint64_t kWholeCell = std::uint64_t{1} << 63, kFaceOfCell = std::uint64_t{1} << 62;
 
 // In each tetrahedron with nodes of both kinds, the points on its edges and faces form a loop of straight lines.

@@ -236,7 +236,7 @@ FacePoints::FacePoints(const SurfaceInCells& surface, PointsOfFaces kind) : kind
         if (kind == PointsOfFaces::kSections) {
           if (face < kuhn::kFacesBetweenCells) part.add_section(surface, cell, face, creases);
         } else if (const auto one = face_point(surface, cell, face, creases)) {
-          part.add(std::uint64_t{16} * cell + face, *one);
+          part.add(number_of_face(cell, face), *one);
         }
       }
     }
@@ -251,7 +251,7 @@ void FacePoints::add_section(const SurfaceInCells& surface, std::uint32_t cell, 
   if (!edges) return;
   const double fine = std::min(tolerance, fine_tolerance(surface.cells.lattice()));
   if (!disagree(*edges, fine, margin)) return;
-  const std::uint64_t number = std::uint64_t{16} * cell + face;
+  const std::uint64_t number = number_of_face(cell, face);
   const bool is_bent = disagree(*edges, tolerance, margin);
   std::optional<Vec3> one;
   if (is_bent) one = meeting_on_crease(*edges, creases, tolerance, unit, margin, CreaseKinds::kNotFine);
@@ -307,12 +307,13 @@ FacePoints::FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> posit
 }
 
 void FacePoints::number_cells() {
-  const std::size_t cells = faces_.empty() ? 0 : faces_.back() / 16 + 1;
+  const std::size_t cells = faces_.empty() ? 0 : std::size_t{cell_of_face(faces_.back())} + 1;
   first_of_cell_.assign(cells + 1, 0);
   faces_of_cell_.assign(cells, 0);
   for (const std::uint64_t face : faces_) {
-    ++first_of_cell_[face / 16 + 1];
-    faces_of_cell_[face / 16] = static_cast<std::uint16_t>(faces_of_cell_[face / 16] | 1U << face % 16);
+    const std::size_t cell = cell_of_face(face);
+    ++first_of_cell_[cell + 1];
+    faces_of_cell_[cell] = static_cast<std::uint16_t>(faces_of_cell_[cell] | 1U << face_in_cell(face));
   }
   for (std::size_t cell = 0; cell < cells; ++cell) first_of_cell_[cell + 1] += first_of_cell_[cell];
 }
@@ -320,9 +321,9 @@ void FacePoints::number_cells() {
 FacePoints::Range FacePoints::find(std::uint32_t cell, std::size_t face) const {
   if (cell >= faces_of_cell_.size() || (faces_of_cell_[cell] >> face & 1U) == 0) return {};
   Range range{first_of_cell_[cell], 0};
-  while (faces_[range.first] % 16 != face) ++range.first;
+  while (face_in_cell(faces_[range.first]) != face) ++range.first;
   const std::uint32_t end = first_of_cell_[cell + 1];
-  while (range.first + range.count < end && faces_[range.first + range.count] % 16 == face) ++range.count;
+  while (range.first + range.count < end && face_in_cell(faces_[range.first + range.count]) == face) ++range.count;
   return range;
 }
 
@@ -352,15 +353,15 @@ void FacePoints::keep_sections_at(const std::vector<std::uint8_t>& cells_of_poly
   const auto is_of_polygons = [&](std::uint32_t cell) { return cells_of_polygons[cell] != 0; };
   const auto add_face_to = [&](FacePoints& part, CreasesHere& creases, std::size_t begin, std::size_t end) {
     const std::uint64_t face = faces_[begin];
-    const auto cell = static_cast<std::uint32_t>(face / 16);
+    const std::uint32_t cell = cell_of_face(face);
     const bool is_section = std::ranges::binary_search(sections_, face);
-    if (!is_section || std::ranges::any_of(cells_at_face(surface.cells, cell, face % 16), is_of_polygons)) {
+    if (!is_section || std::ranges::any_of(cells_at_face(surface.cells, cell, face_in_cell(face)), is_of_polygons)) {
       if (is_section) part.sections_.push_back(face);
       part.add_face(*this, begin, end);
       return;
     }
     creases.enter(cell);
-    if (const auto one = face_point(surface, cell, face % 16, creases)) part.add(face, *one);
+    if (const auto one = face_point(surface, cell, face_in_cell(face), creases)) part.add(face, *one);
   };
   parallel_for(parts.size(), 1, [&](std::size_t first, std::size_t last) {
     CreasesHere creases(surface.creases);

@@ -19,6 +19,16 @@ namespace raycone {
 // others have nine digits at most, as numbers in text files; a thousandth of a voxel at most, far from the origin.
 [[nodiscard]] double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice);
 
+// A face of a cell, as in kuhn::kFaces, in one number, which increases with the cell and then with the face.
+inline constexpr std::uint64_t kFacesPerCell = 16;  // a power of two, which there are not so many of
+[[nodiscard]] constexpr std::uint64_t number_of_face(std::uint32_t cell, std::size_t face) {
+  return kFacesPerCell * cell + face;
+}
+[[nodiscard]] constexpr std::uint32_t cell_of_face(std::uint64_t number) {
+  return static_cast<std::uint32_t>(number / kFacesPerCell);
+}
+[[nodiscard]] constexpr std::size_t face_in_cell(std::uint64_t number) { return number % kFacesPerCell; }
+
 // The cells at a face with nodes of both kinds: it is between two, or within one, which comes twice then.
 [[nodiscard]] std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint32_t cell,
                                                          std::size_t face);
@@ -41,7 +51,7 @@ class FacePoints {
   // the face, its two points and the mesh alone, so that both its cells agree.
   explicit FacePoints(const SurfaceInCells& surface, PointsOfFaces kind = PointsOfFaces::kOne);
   FacePoints() = default;
-  // These points, of faces numbered 16 * cell + face, each once, increasing.
+  // These points, of faces with these numbers, each once, increasing.
   FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions);
 
   [[nodiscard]] PointsOfFaces kind() const { return kind_; }
@@ -85,7 +95,7 @@ class FacePoints {
   void number_cells();
 
   PointsOfFaces kind_ = PointsOfFaces::kOne;
-  std::vector<std::uint64_t> faces_;  // 16 * cell + face; those of a face follow each other
+  std::vector<std::uint64_t> faces_;  // number_of_face() of each point; those of a face follow each other
   std::vector<Vec3> positions_;
   std::vector<std::uint64_t> sections_;
   std::vector<Piece> pieces_;                 // of the points that are not the last ones of their faces, increasing

@@ -71,8 +71,8 @@ std::uint64_t misplaced_vertices(const ContourPoints& points, const SurfaceCells
     return wrong;
   };
   const auto is_out_of_face = [&](const Vec3& p, std::uint64_t face) {
-    const auto [first, second] = kuhn::kFaces[face % 16];
-    const SurfaceCell& cell = cells.cells()[face / 16];
+    const auto [first, second] = kuhn::kFaces[face_in_cell(face)];
+    const SurfaceCell& cell = cells.cells()[cell_of_face(face)];
     return place.holds(p, cell, std::array{first, second}) ? 0U : 1U;
   };
   const auto at_face = [&](std::size_t n) {

@@ -325,7 +325,7 @@ TEST(CellPolygons, AreWhatSectionsAreFor) {
   std::vector<std::uint64_t> between;
   std::vector<Vec3> positions;
   for (std::size_t n = 0; n < one.face_points.faces().size(); ++n) {
-    if (one.face_points.faces()[n] % 16 >= kuhn::kFacesBetweenCells) continue;
+    if (face_in_cell(one.face_points.faces()[n]) >= kuhn::kFacesBetweenCells) continue;
     between.push_back(one.face_points.faces()[n]);
     positions.push_back(one.face_points.positions()[n]);
   }
@@ -396,11 +396,11 @@ TEST(FacePoints, AreDroppedFaceByFace) {
   for (std::size_t n = 0; n < dropped.size(); n += 3) dropped[n] = true;
   const FacePoints left = all.without(dropped);
   for (std::size_t n = 0; n < all.faces().size(); ++n) {
-    const auto cell = static_cast<std::uint32_t>(all.faces()[n] / 16);
-    const auto [first, count] = all.find(cell, all.faces()[n] % 16);
+    const std::uint32_t cell = cell_of_face(all.faces()[n]);
+    const auto [first, count] = all.find(cell, face_in_cell(all.faces()[n]));
     bool is_dropped = false;
     for (std::uint32_t point = first; point < first + count; ++point) is_dropped = is_dropped || dropped[point];
-    const auto [first_left, count_left] = left.find(cell, all.faces()[n] % 16);
+    const auto [first_left, count_left] = left.find(cell, face_in_cell(all.faces()[n]));
     ASSERT_EQ(count_left, is_dropped ? 0U : count);
     for (std::uint32_t point = 0; point < count_left; ++point) {
       EXPECT_EQ(left.positions()[first_left + point], all.positions()[first + point]);

@@ -103,7 +103,7 @@ FacePoints random_face_points(const SurfaceCells& cells, Random& random) {
       const double sum = a + b + c;
       const double u = a / sum, v = b / sum;
       const Vec3 low = cells.corner(cell, 0);
-      faces.push_back(16 * n + face);
+      faces.push_back(number_of_face(static_cast<std::uint32_t>(n), face));
       positions.push_back(low + u * (cells.corner(cell, first) - low) + v * (cells.corner(cell, second) - low));
     }
   }

@@ -77,7 +77,8 @@ OptionGroup field_group() {
         "cut it off"},
        tolerance_option(),
        {"--diagnostics", "", "Add crossings, degenerate, on_surface and error_bound; slow for open meshes"},
-       {"--verify", "N", "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample"},
+       {"--verify", "N",
+        "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample, 9 us with a gradient"},
        {"--engine", "auto|scan|embree", "How to find crossings; for tests, as values do not depend on it"},
        {"--simd", "auto|sse4|avx2|avx512", "Instructions to use; for tests, as values do not depend on them"}}};
 }

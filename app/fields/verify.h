@@ -45,11 +45,11 @@ struct Expectations {
 };
 
 // Compares `samples` with what the meshes are by definition, on the threads that ThreadLimit allows: some 2.7 us per
-// triangle and sample. A winding number or density may be off by the accuracy, whether or not the query is on the
-// surface; inside and the sign of a distance must be what the rule says of the true winding number, a number that
-// cannot be told from its threshold (kIndistinguishable) counting as reaching it; a distance may be off by 1e-12 of
-// itself and the mesh's size, or by 4 roundings of the coordinates; a gradient by 1e-11 of the lengths of what the
-// sides of all triangles add to it. Throws VerificationError about the first sample that is wrong. `name`: the file
+// triangle and sample, 9 us with a gradient. A winding number or density may be off by the accuracy, whether or not the
+// query is on the surface; inside and the sign of a distance must be what the rule says of the true winding number, a
+// number that cannot be told from its threshold (kIndistinguishable) counting as reaching it; a distance may be off by
+// 1e-12 of itself and the mesh's size, or by 4 roundings of the coordinates; a gradient by 1e-11 of the lengths of what
+// the sides of all triangles add to it. Throws VerificationError about the first sample that is wrong. `name`: the file
 // concerned.
 [[nodiscard]] Verification verify_by_definition(const std::string& name, const VerifiedMeshes& meshes,
                                                 std::span<const DrawnSample> samples, const Expectations& expectations);

@@ -22,12 +22,22 @@ Quad cosines_by_square(const QuadVec3& a, const QuadVec3& b, const QuadVec3& ste
   return is_beyond ? (at_a + at_b) / (aa * bb * (cos_a + cos_b)) : (cos_b - cos_a) / square;
 }
 
+// (first - q) x (second - q), to 2^-79 of its length. Where that is at least 2^-30 of |a| |b|, the rounded differences
+// a and b will do: with products and sums, 14 roundings of |a| |b| are lost. Exact differences take three times as
+// long.
+QuadVec3 normal_of(const Vec3& first, const Vec3& second, const Vec3& q, const QuadVec3& a, const QuadVec3& b) {
+  constexpr double kCancels = 0x1p-60;
+  const QuadVec3 rounded = cross(a, b);
+  const bool is_sure = dot(rounded, rounded) > kCancels * dot(a, a) * dot(b, b);
+  return is_sure ? rounded : cross_of_differences(first, second, q);
+}
+
 void add_side(const Vec3& from, const Vec3& to, const Vec3& q, DirectGradient& sum) {
   const bool swapped = lexicographic_order(to, from) < 0;
   const Vec3& first = swapped ? to : from;
   const Vec3& second = swapped ? from : to;
   const QuadVec3 a = quad_difference(first, q), b = quad_difference(second, q), step = quad_difference(second, first);
-  const QuadVec3 normal = cross_of_differences(first, second, q);
+  const QuadVec3 normal = normal_of(first, second, q, a, b);
   const Quad square = dot(normal, normal);
   if (square == 0) return;
   const Quad factor = (swapped ? -1 : 1) * cosines_by_square(a, b, step, square) / kFullSolidAngle;

@@ -13,7 +13,7 @@ struct DirectGradient {
 };
 
 // At any finite q. Sides that two triangles run through in opposite directions cancel exactly; a side whose line q is
-// on adds nothing. Some 3 us per triangle. Thread-safe.
+// on adds nothing. Some 9 us per triangle. Thread-safe.
 [[nodiscard]] DirectGradient direct_gradient(const TriangleMesh& mesh, const Vec3& q);
 
 }  // namespace raycone

@@ -27,7 +27,7 @@ namespace raycone {
 
 // The formats that a command writes.
 struct OutputFormats {
-  std::vector<FieldFormat> written;      // listed so in messages
+  std::vector<FieldFormat> written;      // in the order in which messages list them
   std::optional<FieldFormat> only = {};  // of --raw; the output's name may not promise another one
   std::string contents = "lattices";     // what other formats do not hold
 };

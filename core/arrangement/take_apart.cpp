@@ -205,7 +205,7 @@ class Apart {
       if (fans_of_vertex.size() > kMostCones) return false;
       std::vector<FanCone> cones;
       for (const auto& [root, faces] : fans_of_vertex) cones.emplace_back(border_, vertex, faces);
-      if (!add_moves(vertex, cones, moves, cuts)) return false;
+      if (!part(vertex, cones, moves, cuts)) return false;
     }
     if (cuts.size() > kMostCuts) return false;
     for (const Move& move : moves) give_copy(move.vertex, move.to, move.faces);
@@ -217,24 +217,36 @@ class Apart {
     bool against_perturbation;
     double distance;
   };
-  // What is left to try at a vertex, the first one first.
-  [[nodiscard]] std::vector<Way> ways_at(std::uint32_t vertex) const {
+  // All ways, the first one to try first.
+  [[nodiscard]] std::array<Way, 4> ways() const {
     constexpr double kFarther = 4.0;
     const bool first = options_.against_perturbation;
     const double near = options_.distance, far = kFarther * near;
-    std::vector<Way> ways{{first, near}, {!first, near}, {first, far}, {!first, far}};
-    const std::size_t in_vain = vertex < options_.in_vain.size() ? options_.in_vain[vertex] : 0;
-    ways.erase(ways.begin(), ways.begin() + static_cast<std::ptrdiff_t>(std::min(in_vain, ways.size())));
-    return ways;
+    return {Way{first, near}, Way{!first, near}, Way{first, far}, Way{!first, far}};
   }
 
-  // Whether there is a way.
-  bool add_moves(std::uint32_t vertex, const std::vector<FanCone>& cones, std::vector<Move>& moves,
-                 std::vector<Cut>& cuts) {
-    return std::ranges::any_of(ways_at(vertex), [&](const Way& way) {
-      return way.against_perturbation ? add_moves_against(vertex, cones, way.distance, moves)
-                                      : add_moves_inside(vertex, cones, way.distance, moves, cuts);
-    });
+  // What a vertex is taken apart by.
+  struct Parting {
+    std::vector<Move> moves;
+    std::vector<Cut> cuts;
+    std::vector<std::size_t> order;  // of moves against the perturbation: the fans, the one that stays first
+  };
+
+  // The first of the ways that there are, but for those that were in vain. Whether there is one.
+  bool part(std::uint32_t vertex, const std::vector<FanCone>& cones, std::vector<Move>& moves, std::vector<Cut>& cuts) {
+    std::size_t in_vain = vertex < options_.in_vain.size() ? options_.in_vain[vertex] : 0;
+    for (const Way& way : ways()) {
+      std::optional<Parting> parting = way.against_perturbation ? parting_against(vertex, cones, way.distance)
+                                                                : parting_inside(vertex, cones, way.distance);
+      if (!parting || in_vain-- > 0) continue;
+      moves.insert(moves.end(), parting->moves.begin(), parting->moves.end());
+      cuts.insert(cuts.end(), parting->cuts.begin(), parting->cuts.end());
+      for (std::size_t i = 0; i < parting->order.size(); ++i) {
+        for (const std::uint32_t face : cones[parting->order[i]].faces()) steps_[{face, vertex}] = static_cast<int>(i);
+      }
+      return true;
+    }
+    return false;
   }
 
   static std::vector<Vec3> ways_along_others(const std::vector<FanCone>& cones, std::size_t n) {
@@ -297,8 +309,8 @@ class Apart {
 
   // The first fan stays, and each other one goes farther than those before it, away from them. Of two that may leave
   // each other, the one that is ahead at the other ends of their edges is ahead, or the one whose faces are.
-  bool add_moves_against(std::uint32_t vertex, const std::vector<FanCone>& cones, double distance,
-                         std::vector<Move>& moves) {
+  [[nodiscard]] std::optional<Parting> parting_against(std::uint32_t vertex, const std::vector<FanCone>& cones,
+                                                       double distance) const {
     const std::size_t count = cones.size();
     const Vec3 way = way_against(1.0, 1.0);
     std::vector<std::vector<bool>> leaves(count, std::vector<bool>(count, false));
@@ -317,16 +329,17 @@ class Apart {
     std::ranges::sort(order);
     for (std::size_t i = 0; i < count; ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        if (!leaves[order[i].second][order[j].second]) return false;
+        if (!leaves[order[i].second][order[j].second]) return std::nullopt;
       }
     }
+    Parting parting;
     for (std::size_t i = 0; i < count; ++i) {
-      const FanCone& cone = cones[order[i].second];
-      for (const std::uint32_t face : cone.faces()) steps_[{face, vertex}] = static_cast<int>(i);
-      const Vec3 step = static_cast<double>(i) * distance * way_of(cones, order[i].second);
-      if (i > 0) moves.push_back({vertex, cone.faces(), border_.vertices[vertex] + step});
+      const std::size_t n = order[i].second;
+      parting.order.push_back(n);
+      const Vec3 step = static_cast<double>(i) * distance * way_of(cones, n);
+      if (i > 0) parting.moves.push_back({vertex, cones[n].faces(), border_.vertices[vertex] + step});
     }
-    return true;
+    return parting;
   }
 
   // At how many corners that faces of both have one has gone farther, less those at which the other one has.
@@ -345,15 +358,15 @@ class Apart {
     return ahead;
   }
 
-  bool add_moves_inside(std::uint32_t vertex, const std::vector<FanCone>& cones, double distance,
-                        std::vector<Move>& moves, std::vector<Cut>& cuts) const {
-    std::vector<Move> own_moves;
+  [[nodiscard]] std::optional<Parting> parting_inside(std::uint32_t vertex, const std::vector<FanCone>& cones,
+                                                      double distance) const {
+    Parting parting;
     std::vector<std::size_t> stuck;
     for (std::size_t n = 0; n < cones.size(); ++n) {
       const bool may_stay = stuck.empty() && n + 1 == cones.size();
       const std::optional<Vec3> way = may_stay ? std::nullopt : cones[n].way_from(ways_along_others(cones, n));
       if (way) {
-        own_moves.push_back({vertex, cones[n].faces(), border_.vertices[vertex] + distance * *way});
+        parting.moves.push_back({vertex, cones[n].faces(), border_.vertices[vertex] + distance * *way});
       } else {
         stuck.push_back(n);
       }
@@ -363,12 +376,11 @@ class Apart {
     for (const std::size_t n : stuck) sides[n] = cones[n].side_of_lid();
     std::ranges::stable_sort(stuck, std::greater(),
                              [&](std::size_t n) { return std::pair(!sides[n], cones[n].faces().size()); });
-    if (std::any_of(stuck.begin() + 1, stuck.end(), [&](std::size_t n) { return !sides[n]; })) return false;
+    if (std::any_of(stuck.begin() + 1, stuck.end(), [&](std::size_t n) { return !sides[n]; })) return std::nullopt;
     for (std::size_t i = 1; i < stuck.size(); ++i) {
-      cuts.push_back({vertex, cones[stuck[i]].faces(), *sides[stuck[i]]});
+      parting.cuts.push_back({vertex, cones[stuck[i]].faces(), *sides[stuck[i]]});
     }
-    moves.insert(moves.end(), own_moves.begin(), own_moves.end());
-    return true;
+    return parting;
   }
 
   [[nodiscard]] Vec3 rounded(const Vec3& p) const { return options_.single_precision ? rounded_to_float(p) : p; }

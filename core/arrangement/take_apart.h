@@ -12,13 +12,13 @@ namespace raycone {
 struct ApartOptions {
   double distance = 0.0;          // by which vertices move, world units
   bool single_precision = false;  // new vertices are rounded to float
-  // All move against the perturbation: along one axis where that is enough, else by far less along y than along x, and
-  // along z than along y; those of several fans farther and farther. What lies on faces is then on the side of all of
-  // them that it is on as perturbed.
+  // Vertices move against the perturbation where they can: along one axis where that is enough, else by far less along
+  // y than along x, and along z than along y; those of several fans farther and farther. What lies on faces there is
+  // then on the side of all of them that it is on as perturbed.
   bool against_perturbation = false;
   // Of each vertex how many ways left faults there before, also of those that halve edges; none of those beyond the
   // end. The next way is taken there: first into insides, or against the perturbation, as the others go; then the other
-  // one of the two; then both again, four times as far. A way that there is not is passed over, also where none was.
+  // one of the two; then both again, four times as far. Ways that there are not at a vertex do not count.
   std::vector<std::uint8_t> in_vain{};
 };
 
@@ -28,9 +28,9 @@ struct ApartOptions {
 // off, by 2^-12 of each edge. Faces along an edge belong together where the solid is between them. An edge along which
 // that leaves two parts the same two ends is halved. `sources`: of each triangle, and so of its halves. Returns of each
 // vertex the one that it is a part's own copy of, or itself. Nothing, and the border is left half done, where it has no
-// two sides, as where of more than two faces at an edge one lies on another, or two parts cannot be moved, nor be cut
-// off. Whether what is moved meets nothing must be looked at after it. Precondition: every edge has as many faces in
-// either direction. Needs DefaultFloatingPoint.
+// two sides, as where of more than two faces at an edge one lies on another, or no way is left at a vertex: two parts
+// cannot be moved, nor be cut off. Whether what is moved meets nothing must be looked at after it. Precondition: every
+// edge has as many faces in either direction. Needs DefaultFloatingPoint.
 [[nodiscard]] std::optional<std::vector<std::uint32_t>> take_apart(TriangleMesh& border,
                                                                    std::vector<std::uint32_t>& sources,
                                                                    const ApartOptions& options);

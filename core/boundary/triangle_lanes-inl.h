@@ -134,8 +134,8 @@ void multiply_by_edges(ProductTile& products, std::size_t i, const SolidTriangle
   }
 }
 
-// What multiply_block() does, factor by factor, for the samples whose bit in `trusted` is not set. The block is a copy:
-// one that is referred to from here would be kept in memory where multiply_block() is fast.
+// What multiply_block() does, factor by factor, for the samples whose bit in `trusted` is not set. The block is
+// passed by value: a reference would force multiply_block() to keep it in memory, not in registers.
 template <class Rays>
 HWY_NOINLINE void multiply_carefully(ProductTile& products, const TriangleBlock block, Rays& rays,
                                      std::uint64_t trusted) {

@@ -22,9 +22,9 @@ Quad cosines_by_square(const QuadVec3& a, const QuadVec3& b, const QuadVec3& ste
   return is_beyond ? (at_a + at_b) / (aa * bb * (cos_a + cos_b)) : (cos_b - cos_a) / square;
 }
 
-// (first - q) x (second - q), to 2^-79 of its length. Where that is at least 2^-30 of |a| |b|, the rounded differences
-// a and b will do: with products and sums, 14 roundings of |a| |b| are lost. Exact differences take three times as
-// long.
+// (first - q) x (second - q), to 2^-80 of its length. Each component of the rounded differences' product is off by four
+// roundings of |a| |b|, all of it by seven: that will do where it is 2^-30 of |a| |b| or more. Elsewhere differences
+// are exact, which takes three times as long.
 QuadVec3 normal_of(const Vec3& first, const Vec3& second, const Vec3& q, const QuadVec3& a, const QuadVec3& b) {
   constexpr double kCancels = 0x1p-60;
   const QuadVec3 rounded = cross(a, b);

@@ -11,6 +11,7 @@
 
 #include "core/boundary/sample_tile.h"
 #include "core/data/box.h"
+#include "core/data/sample_box.h"
 #include "core/far/cover.h"
 #include "core/far/lattice_blocks.h"
 #include "core/far/lattice_blocks_walk.h"

@@ -150,7 +150,7 @@ class PieceTurner {
 // What becomes of a face of the mesh.
 enum class FaceFate : std::uint8_t { kAsStored, kReversed, kDropped };
 
-// `turn`: per unique face, 1 as first stored or -1.
+// `sign`: per unique face, 1 as first stored or -1.
 std::vector<FaceFate> fates(const UniqueFaces& unique, const std::vector<std::int8_t>& sign, std::size_t faces) {
   std::vector<FaceFate> fate(faces, FaceFate::kAsStored);
   for (std::size_t i = 0; i < sign.size(); ++i) {
@@ -192,7 +192,7 @@ OrientedMesh with_fates(TriangleMesh mesh, const std::vector<FaceFate>& fate) {
   return {std::move(mesh), counts, std::move(places)};
 }
 
-// As OrientationCounts says. `turn` as for fates().
+// As OrientationCounts says. `sign` as for fates().
 std::uint64_t wall_edges(const UniqueFaces& unique, const FaceNeighbours& neighbours,
                          const std::vector<std::int8_t>& sign) {
   std::uint64_t count = 0;

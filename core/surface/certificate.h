@@ -36,7 +36,7 @@ struct SurfaceFaults {
 // Whether a mesh has none of these faults, but for nodes and places. Sooner where it has any.
 [[nodiscard]] bool is_closed_and_embedded(const TriangleMesh& mesh);
 
-// The vertices at these faults, in increasing order.
+// The vertices at these faults, in increasing order. Takes longer, as it looks for all.
 [[nodiscard]] std::vector<std::uint32_t> vertices_at_faults(const TriangleMesh& mesh);
 
 // The nodes of the lattice that are on the other side of a closed mesh than `inside` has them.

@@ -20,7 +20,7 @@ namespace raycone {
 [[nodiscard]] double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice);
 
 // A face of a cell, as in kuhn::kFaces, in one number, which increases with the cell and then with the face.
-inline constexpr std::uint64_t kFacesPerCell = 16;  // a power of two, which there are not so many of
+inline constexpr std::uint64_t kFacesPerCell = 16;  // a power of two, more than a cell has
 [[nodiscard]] constexpr std::uint64_t number_of_face(std::uint32_t cell, std::size_t face) {
   return kFacesPerCell * cell + face;
 }

@@ -36,7 +36,8 @@ struct FormatTraits {
   enum Content : unsigned {
     kPoints = 1,
     kLattices = 2,
-    kSeveralFields = 4,  // these three: on lattices
+    // On lattices:
+    kSeveralFields = 4,
     kVectors = 8,
     kHalves = 16,  // numbers of 16 bits
   };

@@ -36,7 +36,7 @@ namespace raycone {
   return text.size() > kMost ? beginning + "..." : beginning;
 }
 
-// With so many significant digits, for people.
+// Rounded to so many significant digits, at most 17, as by %.*g, for people.
 [[nodiscard]] inline std::string with_digits(double number, int digits) {
   std::array<char, 32> text;
   const auto end = std::to_chars(text.data(), text.data() + text.size(), number, std::chars_format::general, digits);

@@ -29,7 +29,8 @@ TriangleMesh wedges_beside_a_plate(double gap) {
   return test::joined(wedges, test::box_mesh({0.5, 0, 1 - gap / 2}, {1 - gap, 1, 1 + gap / 2}));
 }
 
-// Two plates in an edge, thinner than its ends move, which only pass each other against the perturbation.
+// Two plates that share an edge, and are thinner than its ends move: into the insides these end beyond the plates,
+// against the perturbation they do not.
 TriangleMesh plates(double thickness) {
   return test::moved(test::cells_mesh({{0, 0, 0}, {1, 1, 0}}), {1, 1, thickness}, {3, 0, 0});
 }

@@ -9,7 +9,7 @@
 namespace raycone {
 namespace {
 
-// Without edges that cancel, nor a plane of all.
+// No edges cancel, and no plane has all of them.
 class OfASoup : public ::testing::Test {
  protected:
   static constexpr int kTriangles = 2000;

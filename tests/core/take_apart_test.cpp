@@ -247,8 +247,8 @@ TEST(TakeApart, KeepsNodesNextToFacesThatNeedNotMove) {
   EXPECT_GT(touching, 8);
 }
 
-// Two plates thinner than vertices move, in an edge: both its ends move past each other, into the inside, but not
-// against the perturbation.
+// Two plates that share an edge, and are thinner than its ends move: into the insides these end beyond the plates,
+// against the perturbation they do not.
 TEST(TakeApart, GoesTheNextWayWhereOneWasInVain) {
   const TriangleMesh plates = test::moved(test::cells_mesh({{0, 0, 0}, {1, 1, 0}}), {1, 1, kDistance / 4}, {0, 0, 0});
   const auto taken_after = [&](const std::vector<std::uint8_t>& in_vain) {
@@ -267,6 +267,7 @@ TEST(TakeApart, GoesTheNextWayWhereOneWasInVain) {
 
 TEST(TakeApart, TellsWhatVerticesAreCopiesOf) {
   test::Random random(7);
+  std::size_t copies = 0;
   for (int round = 0; round < 50; ++round) {
     const TriangleMesh mesh = test::random_cells(random, 3);
     TriangleMesh apart = mesh;
@@ -277,7 +278,9 @@ TEST(TakeApart, TellsWhatVerticesAreCopiesOf) {
     for (std::size_t v = 0; v < apart.vertices.size(); ++v) {
       const std::uint32_t original = (*originals)[v];
       ASSERT_EQ((*originals)[original], original);
-      EXPECT_LE(norm(apart.vertices[v] - apart.vertices[original]), 3 * kDistance);
+      copies += original != v ? 1 : 0;
+      EXPECT_LE(norm(apart.vertices[v] - apart.vertices[original]),
+                3 * kDistance);  // either may have moved, by rounding
       EXPECT_TRUE(v >= mesh.vertices.size() || original == v);
     }
   }

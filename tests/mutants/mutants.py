@@ -664,8 +664,15 @@ MUTANTS = [
         ("core/arrangement/take_apart.cpp", "kFarther = 1.25;", "kFarther = 1.0;")]),
     Mutant("fans_leave_planes", "fans move along one axis where that is enough", [
         ("core/arrangement/take_apart.cpp", "if (does) return way;", "if (does && axis > 2) return way;")]),
+    Mutant("faults_stay", "where parts that were taken apart have faults, they go another way", [
+        ("core/surface/embedded_border.cpp", "++in_vain[v];", "")]),
+    Mutant("copies_are_themselves", "vertices of parts are known as copies", [
+        ("core/arrangement/take_apart.cpp", "add_vertex(at, vertex)",
+         "add_vertex(at, static_cast<std::uint32_t>(border_.vertices.size()))")]),
     Mutant("places_cancel", "places next to a plane are right", [
         ("core/surface/edge_crossing.cpp", "constexpr double kWideSure = 0x1p-58;", "constexpr double kWideSure = 0.0;")]),
+    Mutant("needles_cancel", "gradients next to the lines of sides are those of exact differences", [
+        ("core/exact/direct_gradient.cpp", "kCancels = 0x1p-60;", "kCancels = 0.0;")]),
     Mutant("far_sides_are_lost", "gradients from far away are those of the definition", [
         ("core/exact/direct_gradient.cpp", "constexpr double kFar = 0x1p80;", "constexpr double kFar = 0x1p999;")]),
     Mutant("cavities_go_in", "a vertex moves away from the other parts that touch it", [

@@ -217,12 +217,13 @@ class Apart {
     bool against_perturbation;
     double distance;
   };
-  // All ways, the first one to try first.
-  [[nodiscard]] std::array<Way, 4> ways() const {
+  // The first one to try first.
+  [[nodiscard]] std::vector<Way> ways() const {
     constexpr double kFarther = 4.0;
     const bool first = options_.against_perturbation;
     const double near = options_.distance, far = kFarther * near;
-    return {Way{first, near}, Way{!first, near}, Way{first, far}, Way{!first, far}};
+    if (!options_.other_ways) return {{first, near}};
+    return {{first, near}, {!first, near}, {first, far}, {!first, far}};
   }
 
   // What a vertex is taken apart by.

@@ -16,9 +16,11 @@ struct ApartOptions {
   // y than along x, and along z than along y; those of several fans farther and farther. What lies on faces there is
   // then on the side of all of them that it is on as perturbed.
   bool against_perturbation = false;
-  // Of each vertex how many ways left faults there before, also of those that halve edges; none of those beyond the
-  // end. The next way is taken there: first into insides, or against the perturbation, as the others go; then the other
-  // one of the two; then both again, four times as far. Ways that there are not at a vertex do not count.
+  // Whether vertices that cannot go this way go another one: first into insides, or against the perturbation, as the
+  // others go; then the other one of the two; then both again, four times as far.
+  bool other_ways = false;
+  // Of each vertex how many of these left faults there before, also of those that halve edges; none of those beyond the
+  // end. The next way that there is is taken.
   std::vector<std::uint8_t> in_vain{};
 };
 

@@ -72,10 +72,15 @@ bool count_in_vain(const TriangleMesh& apart, const std::vector<std::uint32_t>& 
   return any;
 }
 
-// Nearly everywhere the first way does. Where there are faults after it, others are tried there alone.
+bool has_all_nodes_right(const SurfaceMesh& surface, const NodeSet& inside) {
+  const std::vector<ExteriorEdge> none;
+  return misplaced_nodes(surface.mesh, inside, &none).empty();
+}
+
+// With other ways: these are tried where there are faults, there alone.
 std::optional<SurfaceMesh> taken_apart(const RuleBorder& border, ApartOptions options) {
-  constexpr int kTries = 3;  // two do in nearly all cases
-  for (int tries = 0; tries < kTries; ++tries) {
+  const int most_tries = options.other_ways ? 3 : 1;  // two do in nearly all cases
+  for (int tries = 0; tries < most_tries; ++tries) {
     auto [mesh, sources] = border;
     const std::optional<std::vector<std::uint32_t>> originals = take_apart(mesh, sources, options);
     if (!originals) return std::nullopt;
@@ -84,14 +89,9 @@ std::optional<SurfaceMesh> taken_apart(const RuleBorder& border, ApartOptions op
       if (!keep_border(surface, Rule{})) return std::nullopt;  // rounding may have turned flat components over
       return surface;
     }
-    if (!count_in_vain(mesh, *originals, options.in_vain)) return std::nullopt;
+    if (tries + 1 == most_tries || !count_in_vain(mesh, *originals, options.in_vain)) break;
   }
   return std::nullopt;
-}
-
-bool has_all_nodes_right(const SurfaceMesh& surface, const NodeSet& inside) {
-  const std::vector<ExteriorEdge> none;
-  return misplaced_nodes(surface.mesh, inside, &none).empty();
 }
 
 // With nodes on their sides, if that can be had. A node on a face counts as moved by less than any distance, along x by
@@ -109,20 +109,21 @@ std::optional<SurfaceMesh> taken_apart_beside(const NodeSet& inside, const RuleB
 
 std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const NodeSet& inside,
                                            const SurfaceOptions& options) {
-  constexpr int kRounds = 2;                                  // the second one hardly ever does more
+  constexpr int kRounds = 3;
   constexpr double kApart = 0x1p-30, kApartRoundings = 32.0;  // the larger one, voxels
   constexpr double kNear = 16.0, kFarther = 16.0;             // roundings, and so many times that the next time
   const bool single_precision = options.single_precision;
   if (!may_be_closed(mesh)) return std::nullopt;
   const double rounding = rounding_of(mesh, single_precision);
-  const ApartOptions as{std::max(kApart * inside.lattice().least_spacing(), kApartRoundings * rounding),
-                        single_precision};
-  std::optional<RuleBorder> border = rule_border(mesh, {options.rule, single_precision, kMostPairs});
-  TriangleMesh in_vain;
+  ApartOptions as{std::max(kApart * inside.lattice().least_spacing(), kApartRoundings * rounding), single_precision};
+  const std::optional<RuleBorder> first = rule_border(mesh, {options.rule, single_precision, kMostPairs});
+  if (!first || first->sources.empty()) return std::nullopt;
+  std::optional<RuleBorder> border = first;
+  TriangleMesh tried;
   const auto surface_of_border = [&]() -> std::optional<SurfaceMesh> {
-    if (is_same(border->mesh, in_vain)) return std::nullopt;
+    if (is_same(border->mesh, tried)) return std::nullopt;
     std::optional<SurfaceMesh> surface = taken_apart_beside(inside, *border, as);
-    if (!surface) in_vain = border->mesh;
+    if (!surface) tried = border->mesh;
     return surface;
   };
   double near = kNear * rounding;
@@ -135,7 +136,8 @@ std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const NodeS
     if (again) look_through(again->sources, border->sources);
     border = std::move(again);
   }
-  return std::nullopt;
+  as.other_ways = true;  // at last: parts that are hardly thicker than roundings are better snapped
+  return taken_apart_beside(inside, *first, as);
 }
 
 }  // namespace raycone

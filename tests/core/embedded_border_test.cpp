@@ -42,18 +42,16 @@ bool is_apart(TriangleMesh mesh, const ApartOptions& options) {
 }
 
 TEST(EmbeddedBorder, GoesDifferentWaysAtDifferentPlaces) {
-  constexpr double kRounding = 8.0 * 0x1p-24, kSmall = 8.0 * kRounding, kDistance = 32.0 * kRounding;
+  constexpr double kSpacing = 0.21, kDistance = 0x1p-30 * kSpacing, kSmall = kDistance / 4;
   const TriangleMesh mesh = test::joined(wedges_beside_a_plate(kSmall), plates(kSmall));
   for (const bool against : {false, true}) {
-    EXPECT_EQ(is_apart(wedges_beside_a_plate(kSmall), {kDistance, true, against}), !against);
-    EXPECT_EQ(is_apart(plates(kSmall), {kDistance, true, against}), against);
-    EXPECT_FALSE(is_apart(mesh, {kDistance, true, against}));
+    EXPECT_EQ(is_apart(wedges_beside_a_plate(kSmall), {kDistance, false, against}), !against);
+    EXPECT_EQ(is_apart(plates(kSmall), {kDistance, false, against}), against);
+    EXPECT_FALSE(is_apart(mesh, {kDistance, false, against}));
   }
-  const Lattice lattice{{-0.3, -0.3, -0.3}, {0.21, 0.21, 0.21}, {0, 0, 0}, {28, 14, 13}};
+  const Lattice lattice{{-0.3, -0.3, -0.3}, {kSpacing, kSpacing, kSpacing}, {0, 0, 0}, {28, 14, 13}};
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
-  SurfaceOptions options;
-  options.single_precision = true;
-  const std::optional<SurfaceMesh> surface = embedded_border(mesh, inside, options);
+  const std::optional<SurfaceMesh> surface = embedded_border(mesh, inside, {});
   ASSERT_TRUE(surface);
   EXPECT_TRUE(faults_of(surface->mesh, inside).none());
   EXPECT_EQ(surface->mesh.triangles.size(), mesh.triangles.size());

@@ -253,7 +253,9 @@ TEST(TakeApart, GoesTheNextWayWhereOneWasInVain) {
   const TriangleMesh plates = test::moved(test::cells_mesh({{0, 0, 0}, {1, 1, 0}}), {1, 1, kDistance / 4}, {0, 0, 0});
   const auto taken_after = [&](const std::vector<std::uint8_t>& in_vain) {
     Taken taken{plates, std::vector<std::uint32_t>(plates.triangles.size()), false};
-    taken.is_apart = take_apart(taken.mesh, taken.sources, {.distance = kDistance, .in_vain = in_vain}).has_value();
+    taken.is_apart =
+        take_apart(taken.mesh, taken.sources, {.distance = kDistance, .other_ways = true, .in_vain = in_vain})
+            .has_value();
     return taken;
   };
   const std::size_t vertices = plates.vertices.size();

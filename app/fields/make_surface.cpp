@@ -77,7 +77,8 @@ std::vector<Warning> warnings_about(const FinishedSurface& closed, const Surface
 
 // What is dropped, though it is a part of the solid.
 std::optional<Warning> warning_about(const ThinParts& thin) {
-  if (!(thin.of_all > 0.0)) return std::nullopt;
+  constexpr double kNothing = 1e-9;  // slivers, which rounding may leave of any mesh
+  if (!(thin.of_all > (thin.lost > 0 ? 0.0 : kNothing))) return std::nullopt;
   std::string text =
       with_digits(100.0 * thin.of_all, 3) + " % of the mesh's area is of parts too thin for the lattice, and left out";
   if (thin.lost > 0) text += ", " + std::to_string(thin.lost) + (thin.lost == 1 ? " part" : " parts") + " as a whole";

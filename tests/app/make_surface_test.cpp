@@ -153,6 +153,21 @@ TEST(MakeSurface, TellsThatWallsAreLostNextToTheSurface) {
   EXPECT_TRUE(warnings(0.95).empty());  // within the box
 }
 
+// A box with a post on a corner, thinner than a cell.
+TEST(MakeSurface, DoesNotTellOfNextToNoArea) {
+  const Lattice lattice{{-0.4, -0.4, -0.4}, {0.25, 0.25, 0.25}, {0, 0, 0}, {8, 8, 9}};
+  const auto warnings = [&](double width) {
+    const TriangleMesh post = box_mesh({1, 1, 1}, {1 + width, 1 + width, 1.3});
+    const TriangleMesh mesh = weld(joined(box_mesh({0, 0, 0}, {1, 1, 1}), post), {});
+    SurfaceOptions options;
+    options.merge_planes = false;  // else the mesh's own faces are kept
+    return make_surface("m", mesh, exterior_edges(mesh), lattice, options, kAllMemory).warnings;
+  };
+  ASSERT_EQ(warnings(1e-3).size(), 1U);
+  EXPECT_EQ(warnings(1e-3)[0].text.find("as a whole"), std::string::npos);
+  EXPECT_TRUE(warnings(1e-11).empty());
+}
+
 // A sphere and, beside it, a plate between the nodes, closed or a sheet.
 TEST(MakeSurface, TellsThatPartsAreTooThin) {
   const Lattice lattice{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 30}};

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/data/vec3.h"
+#include "core/data/warning.h"
 #include "io/files/raw_precision.h"
 
 namespace raycone {
@@ -45,6 +46,9 @@ class PointReader {
 
   // Whether there are columns to choose from, as in text.
   [[nodiscard]] virtual bool has_columns() const { return false; }
+
+  // What may not be meant, known from the first point on: `columns`, where a header leaves open which they are.
+  [[nodiscard]] virtual std::vector<Warning> warnings() const { return {}; }
 
   // Number of points in total, where it is known before they are read: of NPY, NPZ, PLY, and raw numbers in a file.
   [[nodiscard]] virtual std::optional<std::uint64_t> size() const = 0;

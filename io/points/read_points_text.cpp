@@ -49,6 +49,7 @@ class TextPointReader : public PointReader {
 
   [[nodiscard]] bool would_block() override { return fault_ || lines_.would_wait(); }
   [[nodiscard]] bool has_columns() const override { return true; }
+  [[nodiscard]] std::vector<Warning> warnings() const override { return warnings_; }
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return std::nullopt; }
 
  private:
@@ -81,6 +82,7 @@ class TextPointReader : public PointReader {
   void find_layout(std::string_view line) {
     const TableLayout layout = layout_of(header_, line, given_);
     if (!layout.fault.empty()) lines_.fail(layout.fault);
+    if (!layout.doubt.empty()) warnings_.push_back({"columns", layout.doubt});
     delimiter_ = layout.delimiter;
     columns_ = layout.columns;
   }
@@ -129,7 +131,8 @@ class TextPointReader : public PointReader {
   std::optional<std::string> header_;
   std::uint64_t header_number_ = 0;  // of its line
   std::optional<char> delimiter_;    // of the data, known from their first line on
-  std::exception_ptr fault_;         // what comes behind the last points
+  std::vector<Warning> warnings_;
+  std::exception_ptr fault_;  // what comes behind the last points
 };
 
 }  // namespace

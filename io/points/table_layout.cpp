@@ -99,11 +99,20 @@ std::string mismatch(std::size_t names, std::size_t fields) {
          ", expected as many, or --columns";
 }
 
+std::string quoted(std::string_view name) { return "'" + excerpt(name) + "'"; }
+
+// Of three columns people mean these; of more, the first may be a number of the row, or a time.
+std::string doubt_about(const std::vector<std::string_view>& names) {
+  if (names.size() <= 3) return "";
+  return "the first three of " + counted(names.size(), "column") + ", " + quoted(names[0]) + ", " + quoted(names[1]) +
+         " and " + quoted(names[2]) + ", are taken for x, y and z, as no names tell; --columns takes others";
+}
+
 // Where the delimiter is this one.
 TableLayout layout_with(char delimiter, const std::optional<std::string>& header,
                         const std::vector<std::string_view>& fields, const std::optional<Columns>& given) {
-  if (given) return {delimiter, *given, {}};
-  if (!header) return {delimiter, {0, 1, 2}, {}};
+  if (given) return {.delimiter = delimiter, .columns = *given};
+  if (!header) return {.delimiter = delimiter};
   // Headers and rows may be separated by other characters.
   std::vector<char> of_headers = delimiters_of(*header);
   of_headers.insert(of_headers.begin(), delimiter);
@@ -111,12 +120,15 @@ TableLayout layout_with(char delimiter, const std::optional<std::string>& header
     const std::vector<std::string_view> names = fields_of(*header, of_header);
     const std::optional<Columns> columns = named_columns(names);
     if (!columns) continue;
-    return {delimiter, *columns, fit(names, fields, of_header) ? "" : mismatch(names.size(), fields.size())};
+    return {.delimiter = delimiter,
+            .columns = *columns,
+            .fault = fit(names, fields, of_header) ? "" : mismatch(names.size(), fields.size())};
   }
   const std::vector<std::string_view> names = fields_of(*header, delimiter);
   const bool has_index = names.size() > 1 && names.front().empty();  // as tables of R and pandas have
-  return {
-      delimiter, {0, 1, 2}, has_index ? "the first column has no name, expected columns x, y and z, or --columns" : ""};
+  return {.delimiter = delimiter,
+          .fault = has_index ? "the first column has no name, expected columns x, y and z, or --columns" : "",
+          .doubt = doubt_about(names)};
 }
 
 }  // namespace
@@ -132,8 +144,9 @@ namespace {
 
 // Words that may stand beside x, y or z in a name.
 bool says_little(std::string_view word) {
-  constexpr std::array<std::string_view, 14> kWords{
-      "point", "points", "pos", "position", "coord", "coordinate", "coords", "um", "mm", "cm", "m", "km", "in", "ft"};
+  constexpr std::array<std::string_view, 19> kWords{
+      "p",      "point",  "points", "pos", "position", "coord", "coordinate", "coords", "location", "vertex",
+      "center", "centre", "um",     "mm",  "cm",       "m",     "km",         "in",     "ft"};
   return std::ranges::any_of(kWords, [&](std::string_view known) { return is_word(word, known); });
 }
 
@@ -143,8 +156,9 @@ std::size_t axis_of_letter(std::string_view name) {
   return name.size() == 1 ? std::min(std::string_view("xyz").find(lower_case(name.front())), kNoAxis) : kNoAxis;
 }
 
-// Of "X", "y [mm]", "z(m)".
+// Of "X", "y [mm]", "z(m)"; and of "//X", as CloudCompare begins a header.
 std::size_t axis_with_unit(std::string_view name) {
+  if (name.starts_with("//")) name.remove_prefix(2);
   const std::size_t unit = name.find_first_of("[(");
   if (unit != std::string_view::npos && (name.ends_with(']') || name.ends_with(')'))) name = name.substr(0, unit);
   while (name.ends_with(' ')) name.remove_suffix(1);

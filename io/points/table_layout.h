@@ -15,7 +15,8 @@ using Columns = std::array<std::size_t, 3>;  // of x, y and z, from 0
 struct TableLayout {
   char delimiter = ' ';
   Columns columns{0, 1, 2};
-  std::string fault;  // why the header does not fit the line; empty where it does
+  std::string fault{};  // why the header does not fit the line; empty where it does
+  std::string doubt{};  // that the header leaves open which columns are meant; empty where it does not
 };
 
 [[nodiscard]] std::vector<std::string_view> fields_of(std::string_view line, char delimiter);

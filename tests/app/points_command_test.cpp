@@ -52,6 +52,19 @@ TEST_F(PointsCommand, TakesTheColumnsNamed) {
   EXPECT_EQ(result.out, "x,y,z,w\n0.5,0.5,0.5,1\n2,0,0,0\n");
 }
 
+TEST_F(PointsCommand, WarnsWhereAHeaderDoesNotTellTheColumns) {
+  write_text(points_, "id,tx,ty,tz\n7,0.5,0.5,0.5\n");
+  const CommandResult result = run_raycone({"points", mesh_, points_, "--report", dir_ / "r.json"});
+  EXPECT_EQ(result.status, 0);
+  EXPECT_NE(result.err.find("raycone: warning: " + points_ + ": columns: the first three of 4 columns, 'id', 'tx'"),
+            std::string::npos)
+      << result.err;
+  EXPECT_NE(read_text(dir_ / "r.json").find("\"columns\""), std::string::npos);
+  const CommandResult strict = run_raycone({"points", mesh_, points_, "--strict", "-o", dir_ / "out.csv"});
+  EXPECT_EQ(strict.status, 2);
+  EXPECT_FALSE(std::filesystem::exists(dir_ / "out.csv"));
+}
+
 TEST_F(PointsCommand, AnswersEachLineOfAReaderThatWaits) {
   Command command(raycone_command({"points", mesh_, "-", "--quiet"}));
   EXPECT_EQ(command.read_line(), "x,y,z,w") << "the header comes before the first question";

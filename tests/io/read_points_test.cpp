@@ -120,8 +120,9 @@ TEST_F(ReadPoints, DelimiterIsThatOfTheRows) {
 }
 
 TEST_F(ReadPoints, NamesOfColumnsMayHaveWordsThatSayLittle) {
-  for (const char* const header : {"OBJECTID,POINT_X,POINT_Y,POINT_Z", "t,pos_x,pos_y,pos_z", "id,x_mm,y_mm,z_mm",
-                                   "n,coord.x,coord.y,coord.z", "n,X (m),Y (m),Z (m)"}) {
+  for (const char* const header :
+       {"OBJECTID,POINT_X,POINT_Y,POINT_Z", "t,pos_x,pos_y,pos_z", "id,x_mm,y_mm,z_mm", "n,coord.x,coord.y,coord.z",
+        "n,X (m),Y (m),Z (m)", "id,P.x,P.y,P.z", "n,center_x,center_y,center_z", "n,//X,Y,Z"}) {
     EXPECT_EQ(read(std::string(header) + "\n7,1,2,3\n8,-4,.5,6e-3\n"), kTwo) << header;
   }
   EXPECT_EQ(read("n,X [m],Y [m],Z [m],pos_x\n7,1,2,3,0\n8,-4,.5,6e-3,0\n"), kTwo);
@@ -211,6 +212,24 @@ TEST_F(ReadPoints, TextGluedToQuotesIsNoNumber) {
 TEST_F(ReadPoints, HeaderOfOtherNamesMeansTheFirstThreeColumns) {
   EXPECT_EQ(read("//X Y Z\n1 2 3\n-4 .5 6e-3\n"), kTwo);
   EXPECT_EQ(read("some title\n1,2,3\n-4,.5,6e-3\n"), kTwo);
+}
+
+TEST_F(ReadPoints, HeadersThatLeaveOpenWhichColumnsAreMeantAreWarnedAbout) {
+  const auto warnings = [this](const std::string& header, const ReadPointsOptions& options = {}) {
+    const std::unique_ptr<PointReader> reader = open(header + "\n7 1 2 3\n8 -4 .5 6e-3\n", options);
+    EXPECT_TRUE(reader->warnings().empty()) << "nothing is known yet";
+    (void)read_all(*reader);
+    return reader->warnings();
+  };
+  EXPECT_EQ(warnings("id tx ty tz"),
+            (std::vector<Warning>{{"columns",
+                                   "the first three of 4 columns, 'id', 'tx' and 'ty', are taken for x, y and "
+                                   "z, as no names tell; --columns takes others"}}));
+  EXPECT_TRUE(warnings("id tx ty tz", {.columns = {{2, 3, 4}}, .raw = {}}).empty());
+  EXPECT_TRUE(warnings("id x y z").empty());
+  EXPECT_TRUE(warnings("//X Y Z I").empty());
+  EXPECT_TRUE(warnings("tx ty tz").empty()) << "no others are named";
+  EXPECT_TRUE(warnings("# no header").empty());
 }
 
 // A first line that is not read as numbers may be a point all the same: it must not be lost.

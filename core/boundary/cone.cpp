@@ -8,9 +8,9 @@
 namespace raycone {
 namespace {
 
-// A product's argument may be off by 1e-13 in double. Times more than this it would show; edges that so many faces
-// share are rare enough for 64 bits.
-constexpr std::int32_t kLargestInDouble = 256;
+// Next to an edge a product's argument is off by some 1.6e-14 turns in double, of which 1e-12 is expected of values.
+// Times more than this it would show; edges that so many faces share are rare enough for 64 bits.
+constexpr std::int32_t kLargestInDouble = 32;
 
 void add_enclosed(const ChainGroup& group, const SampleTile& samples, std::span<Turns> cone) {
   for (std::size_t i = 0; i < samples.count; ++i) {

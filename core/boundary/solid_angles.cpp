@@ -32,7 +32,7 @@ bool is_long(const Vec3& a, const Vec3& b) {
   return !(largest_coordinate(side) < kLongest);
 }
 
-constexpr double kManyCopies = 256;  // equal faces
+constexpr double kManyCopies = 32;  // equal faces: their errors are equal, too
 
 // The same for all orders of the corners but for `orientation`, and for faces that were left unwelded.
 SolidTriangle with_sorted_corners(const Vec3& a, const Vec3& b, const Vec3& c) {

@@ -36,6 +36,10 @@ double distance_to_threshold(const Rule& rule, double w) {
   return 0.0;
 }
 
+bool ignores_orientation(const Rule& rule) {
+  return rule.kind == RuleKind::kAbs || rule.kind == RuleKind::kNonzero || rule.kind == RuleKind::kOdd;
+}
+
 bool holds(const Rule& rule, double w) {
   switch (rule.kind) {
     case RuleKind::kThreshold:

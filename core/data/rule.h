@@ -42,6 +42,9 @@ inline constexpr double kIndistinguishable = 1e-24;
 // than this are on w's side. Off by rounding, some units of w in the last place.
 [[nodiscard]] double distance_to_threshold(const Rule& rule, double w);
 
+// Whether the rule takes w and -w alike, but for w just on a critical value: reversed faces do not matter to it.
+[[nodiscard]] bool ignores_orientation(const Rule& rule);
+
 // Whether a point of winding number `w` (finite) is inside. Exact.
 [[nodiscard]] bool holds(const Rule& rule, double w);
 

@@ -155,10 +155,9 @@ class WindingNumberEvaluator {
   [[nodiscard]] Estimate estimated_seconds(const Lattice& lattice) const;
 
   // What values are expected to be off by at most, turns: the tolerance, or kLeastTolerance where that is less. From
-  // 9000 exterior edges on, counted with multiplicity, it is 2^-53 times their number at least: doubles of such values
-  // can do no better. What a tolerance leaves out is within it. What sums round beside it is below doubt(), and
-  // measured far below; docs/method.md, "What is guaranteed", says what of this is proved. Diagnostics bound each
-  // value.
+  // 9000 exterior edges on, counted with multiplicity, it is 2^-53 times their number at least. What a tolerance leaves
+  // out is within it. What sums round beside it is below doubt(), and on real meshes far below this; where the roundings
+  // of many edges agree it may be more (docs/method.md, "What is guaranteed"). Diagnostics bound each value.
   [[nodiscard]] double expected_error() const;
 
   // No value is off by more, turns, but for its last rounding (docs/method.md, "What is guaranteed"). 0 for closed

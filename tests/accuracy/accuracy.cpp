@@ -187,7 +187,7 @@ Bounds compare_bounds(const TriangleMesh& mesh, const WindingNumberEvaluator& ev
   return {static_cast<std::uint64_t>(std::count(violated.begin(), violated.end(), 1)), ratios[ratios.size() / 2]};
 }
 
-// Rows of the lattice whose ray meets an edge or vertex exactly.
+// Rows of the lattice with ties (docs/method.md, "Degenerate").
 std::uint64_t count_degenerate_rows(const TriangleMesh& mesh, const WindingNumberEvaluator& evaluator) {
   const Lattice lattice = lattice_of(mesh, 50);
   std::uint64_t rows = 0;

@@ -55,7 +55,7 @@ direct sum.
 | nodes | the same at 2000 random nodes of the lattice of 50³ samples of its box (`--resolution 50,50,50`) |
 | mean | the mean difference at these nodes |
 | bound | the error bound that `--diagnostics` prints, divided by the true error (see below) |
-| rows | how many of the lattice's 2500 rays meet an edge or vertex exactly |
+| rows | how many of the lattice's 2500 rays have ties: edges that are level with the ray, or along it, of triangles whose box it meets |
 | on | points exactly on the surface |
 
 Differences are absolute. *bound* is the median over 20 points in the box, with the true error in 113 bits. A bound that

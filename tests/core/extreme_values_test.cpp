@@ -127,9 +127,9 @@ TEST(ExtremeValues, AreRightForTrianglesWithOneMinuteSide) {
 
 // Faces on top of one another, as in meshes that were joined with themselves: an argument is multiplied by their
 // number.
-TEST(ExtremeValues, AreRightForMultiplicitiesOfAHundredThousand) {
+TEST(ExtremeValues, OfManyCopiesAreAsRightAsExpected) {
   Random random(4);
-  for (const std::size_t copies : {257U, 1000U, 100'000U}) {
+  for (const std::size_t copies : {32U, 33U, 256U, 1000U, 100'000U}) {
     const TriangleMesh few = test::soup(random, 3);
     TriangleMesh many = few;
     many.triangles.clear();
@@ -138,12 +138,12 @@ TEST(ExtremeValues, AreRightForMultiplicitiesOfAHundredThousand) {
     many.triangles.push_back(few.triangles[2]);
     std::vector<Vec3> queries = queries_about(few, random, 20);
     std::erase_if(queries, [](const Vec3& q) { return !(std::abs(q.x) + std::abs(q.y) + std::abs(q.z) < 10); });
-    for (int n = 0; n < 400; ++n) {  // beside an edge, where factors cancel most before the careful ones take over
-      const double along = test::uniform(random, 0, 1), beside = std::exp2(-test::uniform(random, 3, 7));
+    for (int n = 0; n < 2000; ++n) {  // beside an edge, where factors cancel most before the careful ones take over
+      const double along = test::uniform(random, 0, 1), beside = std::exp2(-test::uniform(random, 3, 12));
       queries.push_back(along * few.vertices[0] + (1 - along) * few.vertices[1] +
                         beside * test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}}));
     }
-    const WindingNumberEvaluator evaluator(many);
+    const WindingNumberEvaluator evaluator(many, {.accuracy = {.tolerance = 0.0}});
     std::vector<double> values(queries.size());
     evaluator.evaluate(queries, values);
     for (std::size_t i = 0; i < queries.size(); ++i) {

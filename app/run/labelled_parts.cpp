@@ -18,6 +18,11 @@ std::string listed_names(const std::vector<std::size_t>& empty, const MeshParts&
   return text + (empty.size() > kMost ? ", ..." : "");
 }
 
+// Of one part of several, each of which is a component or more.
+std::uint64_t reversed_components(const MeshDefects& defects) {
+  return defects.reversed_components == 0 && defects.negative_volume ? 1 : defects.reversed_components;
+}
+
 }  // namespace
 
 LabelledParts::LabelledParts(MeshRun& run, const MeshOptions& mesh, const FieldOptions& field,
@@ -54,15 +59,14 @@ MeshToEvaluate LabelledParts::next() {
   return part;
 }
 
+// A cavity is reversed as a part of its own, which is no harm where the rule does not care.
 void LabelledParts::note(const MeshToEvaluate& part) {
   PartReport& report = run_.report.parts[next_];
   report.faces = part.mesh.triangles.size();
   report.exterior_edges = part.edges.size();
   defects_.inconsistent_edges += part.defects.inconsistent_edges;
   defects_.cancelling_pairs += part.defects.cancelling_pairs;
-  defects_.reversed_components += part.defects.reversed_components;
-  // Of several parts, each is a component more.
-  if (part.defects.negative_volume && part.defects.reversed_components == 0) ++defects_.reversed_components;
+  if (!ignores_orientation(field_.rule)) defects_.reversed_components += reversed_components(part.defects);
   turned_ += part.orientation;
   if (whole_ != WholeMesh::kEvaluated) run_.report.orientation += part.orientation;
 }

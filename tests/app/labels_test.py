@@ -511,6 +511,15 @@ class Refusals(Labels):
         self.refused("lattice left_lobe.obj turned.obj -o s.npy --field label --strict" + BOX, 2, "turned.obj: reversed")
         self.assertFalse(os.path.exists("s.npy"))
 
+    def test_a_cavity_is_reversed_only_where_the_rule_cares(self):
+        self.write("hollow.obj", obj({"outer": box((0, 0, 0)), "inner": box((0.25, 0.25, 0.25), 0.5, flipped=True)}))
+        words = "lattice hollow.obj -o l.npy --field label --parts component --resolution 9"
+        for rule in ("threshold=0.5", "positive"):
+            self.assertIn(": reversed: 1 closed", self.reported(words + " --rule " + rule))
+        for rule in ("abs=0.5", "odd", "nonzero"):
+            self.assertNotIn("warning", self.reported(words + " --rule " + rule))
+        self.assertEqual((numpy.load("l.npy") > 0).sum(), 8**3)  # the upper faces are outside
+
 
 class Batches(Labels):
     def test_each_mesh_has_its_parts(self):

@@ -17,6 +17,7 @@ constexpr double kTop = 2.4;  // as far as the legend's bar is below its title
 constexpr double kBottom = 4.8;
 constexpr double kTickLength = 0.45;
 constexpr double kTickGap = 0.4;  // between a tick and its number
+constexpr double kNameGap = 0.8;  // between the name of the axis upwards and its numbers
 constexpr double kEdge = 0.7;     // between all that is drawn and the page's border
 constexpr double kLegendGap = 1.4;
 constexpr double kTitleLine = 1.2;  // from the page's top to what titles stand on
@@ -78,6 +79,11 @@ void choose_ticks(PageLayout& layout, const PlotAxis& across, const PlotAxis& up
   });
 }
 
+// Room for the name of the axis upwards beside its numbers. With an offset it is long, and stands above them.
+double room_for_name(const PlotAxis& upwards, const Ticks& ticks, double text) {
+  return ticks.offset.empty() ? text_width(upwards.name, text) + kNameGap * text : 0.0;
+}
+
 // The plot gets what its ticks and the legend leave of the page; the ticks depend on the plot's size.
 PageLayout lay_out(const PlaneView& view, const PlotAxis& across, const PlotAxis& upwards, const Legend& legend) {
   PageLayout layout;
@@ -90,7 +96,8 @@ PageLayout lay_out(const PlaneView& view, const PlotAxis& across, const PlotAxis
   for (int pass = 0; pass < 3; ++pass) {
     choose_ticks(layout, across, upwards);
     const double numbers = std::max(widest(layout.upwards, t), widest(layout.across, t) / 2 - kTickLength * t);
-    layout.left = std::llround((kEdge + kTickGap + kTickLength) * t + numbers);
+    const double name = room_for_name(upwards, layout.upwards, t);
+    layout.left = std::llround((kEdge + kTickGap + kTickLength) * t + name + numbers);
     const std::int64_t beside = layout.left + std::llround((kLegendGap + kEdge) * t) + key.width;
     const std::int64_t above = layout.top + std::llround(kBottom * t);
     const double scale =
@@ -130,7 +137,7 @@ void draw_axis_across(Coverage& ink, const PageLayout& layout, const PlotAxis& a
   add_text(ink, label, std::max(left, kEdge * t), baseline + 1.7 * t, t);
 }
 
-// Returns where the label above it ends.
+// Returns where the label above it ends, if there is one.
 double draw_axis_upwards(Coverage& ink, const PageLayout& layout, const PlotAxis& axis, double stroke) {
   const double t = layout.text;
   const auto left = static_cast<double>(layout.left);
@@ -140,10 +147,13 @@ double draw_axis_upwards(Coverage& ink, const PageLayout& layout, const PlotAxis
     add_stroke(ink, {{left - kTickLength * t, y}, {left - stroke, y}}, stroke);
     add_text(ink, tick.text, number_right - text_width(tick.text, t), y + t / 2, t);
   }
+  if (layout.upwards.offset.empty()) {
+    add_text(ink, axis.name, kEdge * t, (static_cast<double>(layout.top + layout.bottom()) + t) / 2, t);
+    return 0.0;
+  }
   const std::string label = axis.name + layout.upwards.offset;
-  const double label_left = layout.upwards.offset.empty() ? number_right - text_width(label, t) : kEdge * t;
-  add_text(ink, label, label_left, kTitleLine * t, t);
-  return label_left + text_width(label, t);
+  add_text(ink, label, kEdge * t, kTitleLine * t, t);
+  return kEdge * t + text_width(label, t);
 }
 
 // Right of `end`. The legend's title begins above it, or further left where the page would end before it does.

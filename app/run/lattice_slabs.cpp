@@ -1,6 +1,7 @@
 #include "app/run/lattice_slabs.h"
 
 #include "app/process/limits.h"
+#include "app/process/stopwatch.h"
 #include "app/run/field_run.h"
 #include "app/samples/disk_space.h"
 #include "app/samples/lattice_checks.h"
@@ -69,14 +70,17 @@ void check_slab_memory(const LatticeCommand& command, const LatticeWriter& write
   check_memory(report.mesh, bytes, limits.memory());
 }
 
+// To load what writes VDB may take longer than all the rest.
 std::unique_ptr<LatticeWriter> open_lattice_writer(const LatticeCommand& command, MeshRun& run) {
-  const RunReport& report = run.report;
+  RunReport& report = run.report;
   const FieldFormat format = command.encoding.format;
   const OutputDescription description = description_of(report, command.field, command.encoding);
   check_digits(report.output, *report.lattice, command.field, format, description);
   check_memory(report.mesh, memory_to_begin(command, report), run.limits().memory());
   run.output.reserve(least_lattice_file(format, description, report.samples));
-  std::unique_ptr<LatticeWriter> writer = make_writer(command, run.output, *report.lattice, description, run.limits());
+  std::unique_ptr<LatticeWriter> writer = timed(report.seconds.write, [&] {
+    return make_writer(command, run.output, *report.lattice, description, run.limits());
+  });
   check_slab_memory(command, *writer, report, run.limits());
   return writer;
 }

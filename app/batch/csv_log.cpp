@@ -72,6 +72,7 @@ std::vector<CsvRecord> CsvLog::read() const {
   if (!is_table && header.starts_with(all)) return {};  // empty, or a header that was never completed
   if (!is_table) {
     const std::string expected = header.substr(0, header.find_last_not_of("\r\n") + 1);
+    if (all.starts_with(expected + "\r\n")) throw InputError(path_ + ":1: ends with CR LF, expected LF");
     throw InputError(path_ + ":1: not written by raycone batch, expected " + expected);
   }
   std::vector<CsvRecord> rows = parsed(all).records;

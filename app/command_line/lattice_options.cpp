@@ -60,8 +60,8 @@ void check_one_field(const LatticeCommand& command) {
 void check_halves(const FieldEncoding& encoding) {
   if (encoding.precision != Precision::kHalf || is_text(encoding.format)) return;
   if (traits_of(encoding.format).holds(FormatTraits::kHalves)) return;
-  throw UsageError("--dtype f16: this format has no numbers of 16 bits, expected f32, f64 or " +
-                   joined(names_of(formats_that_hold(FormatTraits::kHalves)), ", "));
+  throw UsageError("--dtype f16: this format has no numbers of 16 bits, expected f32 or f64, or the format " +
+                   enumerated(names_of(formats_that_hold(FormatTraits::kHalves)), " or "));
 }
 
 // NRRD alone leaves the choice.

@@ -67,14 +67,15 @@ std::vector<Warning> warnings_about(const OrientationCounts& counts) {
     warnings.push_back({"walls", counted_as(edges, "edge", "edges") +
                                      " where faces stored in both orientations meet a surface that is closed without "
                                      "them; --orient auto keeps one of each two, which bends the winding number "
-                                     "nearby; --orient keep is right for walls between cells"});
+                                     "nearby; --orient keep is right for walls between cells, for others this is"});
   }
   return warnings;
 }
 
 Warning weld_collapsed(std::uint64_t faces, double distance) {
-  return {"weld-collapsed", counted_as(faces, "face", "faces") + " removed by --weld " + with_digits(distance, 6) +
-                                ", which made corners one; a smaller distance keeps " + (faces == 1 ? "it" : "them")};
+  return {"weld-collapsed", counted_as(faces, "face", "faces") + " lost their area to --weld " +
+                                with_digits(distance, 6) + ", which made corners one; a smaller distance keeps " +
+                                (faces == 1 ? "it" : "them")};
 }
 
 bool should_have_inside(const Box& box, const PlacedLattice& lattice) {

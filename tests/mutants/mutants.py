@@ -658,12 +658,12 @@ MUTANTS = [
     Mutant("borders_face_in", "where the rule holds in front of faces, the border faces the other way", [
         ("core/arrangement/rule_border.cpp", ": Place::kTurned);", ": Place::kAsItIs);")]),
     Mutant("solids_meet_through_edges", "faces at an edge belong together where the solid is between them", [
-        ("core/arrangement/take_apart.cpp", "(*order)[(n + order->size() - 1) % order->size()]", "(*order)[(n + 1) % order->size()]")]),
+        ("core/arrangement/face_pairs.cpp", "(*order)[(n + order->size() - 1) % order->size()]", "(*order)[(n + 1) % order->size()]")]),
     Mutant("fans_cross", "fans that go ahead at one end of an edge pass those that do at the other", [
-        ("core/arrangement/take_apart.cpp", "if (does) return way;", "if (does && axis > 2) return way;"),
-        ("core/arrangement/take_apart.cpp", "kFarther = 1.25;", "kFarther = 1.0;")]),
+        ("core/arrangement/fan_parting.cpp", "if (does) return way;", "if (does && axis > 2) return way;"),
+        ("core/arrangement/fan_parting.cpp", "kFarther = 1.25;", "kFarther = 1.0;")]),
     Mutant("fans_leave_planes", "fans move along one axis where that is enough", [
-        ("core/arrangement/take_apart.cpp", "if (does) return way;", "if (does && axis > 2) return way;")]),
+        ("core/arrangement/fan_parting.cpp", "if (does) return way;", "if (does && axis > 2) return way;")]),
     Mutant("faults_stay", "where parts that were taken apart have faults, they go another way", [
         ("core/surface/embedded_border.cpp", "++in_vain[v];", "")]),
     Mutant("copies_are_themselves", "vertices of parts are known as copies", [

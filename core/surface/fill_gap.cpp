@@ -7,84 +7,11 @@
 #include <utility>
 
 #include "core/data/single_precision.h"
+#include "core/surface/best_triangulation.h"
 #include "core/surface/source_plane.h"
 
 namespace raycone {
 namespace {
-
-struct Point2 {
-  double x, y;
-};
-
-double turn(const Point2& a, const Point2& b, const Point2& c) {
-  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
-}
-
-// Cuts a polygon into triangles of which the worst is as good as can be. Where its border does not meet itself and all
-// triangles show their fronts, they do not overlap.
-class PolygonCutter {
- public:
-  // `corners` go around counter-clockwise where `front` looks at the viewer.
-  PolygonCutter(const std::vector<Vec3>& corners, const Vec3& front)
-      : size_(corners.size()), best_(size_ * size_, {kWhole, 0}) {
-    const Vec3 across = std::abs(front.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0};
-    const Vec3 u = cross(across, front), v = cross(front, u);
-    for (const Vec3& p : corners) {
-      const Vec3 from_first = p - corners.front();
-      points_.push_back({dot(u, from_first), dot(v, from_first)});
-    }
-  }
-
-  // Numbers of corners; nothing where some triangle would have to be turned over.
-  std::vector<Triangle> triangles() {
-    for (std::size_t sides = 2; sides < size_; ++sides) {
-      for (std::size_t first = 0; first + sides < size_; ++first) cut(first, first + sides);
-    }
-    std::vector<Triangle> found;
-    if (at(0, size_ - 1).shape > 0.0) collect(0, size_ - 1, found);
-    return found;
-  }
-
- private:
-  static constexpr double kWhole = 1e300;
-  struct Cut {
-    double shape;  // of the worst triangle between two corners and those between them
-    std::size_t corner;
-  };
-
-  [[nodiscard]] Cut& at(std::size_t first, std::size_t last) { return best_[first * size_ + last]; }
-  void cut(std::size_t first, std::size_t last) {
-    Cut best{0.0, 0};
-    for (std::size_t corner = first + 1; corner < last; ++corner) {
-      const double sides = std::min(at(first, corner).shape, at(corner, last).shape);
-      if (!(sides > best.shape)) continue;
-      const double shape = std::min(sides, shape_of(points_[first], points_[corner], points_[last]));
-      if (shape > best.shape) best = {shape, corner};
-    }
-    at(first, last) = best;
-  }
-  void collect(std::size_t first, std::size_t last, std::vector<Triangle>& found) {
-    if (last - first < 2) return;
-    const std::size_t corner = at(first, last).corner;
-    found.push_back(
-        {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(corner), static_cast<std::uint32_t>(last)});
-    collect(first, corner, found);
-    collect(corner, last, found);
-  }
-
-  // Twice the area by the square of the longest side; 0 for what is turned over.
-  [[nodiscard]] static double shape_of(const Point2& a, const Point2& b, const Point2& c) {
-    const auto square = [](const Point2& p, const Point2& q) {
-      return (p.x - q.x) * (p.x - q.x) + (p.y - q.y) * (p.y - q.y);
-    };
-    const double area = turn(a, b, c), longest = std::max({square(a, b), square(b, c), square(c, a)});
-    return area > 0.0 ? area / longest : 0.0;
-  }
-
-  std::size_t size_;
-  std::vector<Point2> points_;
-  std::vector<Cut> best_;  // of each first and last corner
-};
 
 // Runs of sides in one plane are cut off one by one, each along the lines where the planes before and after it meet it,
 // until one plane is left.
@@ -378,7 +305,7 @@ bool GapFiller::add_polygon(const std::vector<std::size_t>& corners, const Side&
   std::vector<Vec3> points;
   for (const std::size_t corner : corners) points.push_back(points_[corner]);
   if (corners.size() < 3) return true;  // two sides that meet
-  const std::vector<Triangle> triangles = PolygonCutter(points, labels_[like.label].plane.normal).triangles();
+  const std::vector<Triangle> triangles = best_triangulation(points, labels_[like.label].plane.normal);
   if (triangles.empty()) return false;
   for (const auto& [a, b, c] : triangles) {
     add_triangle(points[a], points[b], points[c]);

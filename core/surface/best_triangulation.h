@@ -1,0 +1,18 @@
+// Triangles that a polygon in a plane is cut into.
+#pragma once
+
+#include <vector>
+
+#include "core/data/triangle_mesh.h"
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+// Triangles of a polygon's corners, by number, of which the worst is as far from a needle as can be (shape_of()), as
+// seen against `front`, the normal of length 1 from where the corners go around counter-clockwise. All of them show
+// their fronts there: where the polygon does not meet itself, they do not overlap. None where some triangle would have
+// to be turned over. Dynamic programming over the polygon's diagonals (Klincsek 1980): time n^3, memory n^2.
+// Thread-safe.
+[[nodiscard]] std::vector<Triangle> best_triangulation(const std::vector<Vec3>& corners, const Vec3& front);
+
+}  // namespace raycone

@@ -64,6 +64,10 @@ class GapFiller {
     std::size_t first, sides;
     friend auto operator<=>(const Run&, const Run&) = default;
   };
+  // Of a run, and of the sides before and after it.
+  struct RunLabels {
+    std::size_t own, before, after;
+  };
   // A line along which a run is cut off.
   struct Path {
     std::vector<std::size_t> places;  // on the run, from 0
@@ -98,10 +102,9 @@ class GapFiller {
   bool fill_sectors(const Vec3& corner);
   [[nodiscard]] std::size_t nearest_end(std::size_t between, const Vec3& point) const;
   bool cut_off(const Run& run);
-  std::optional<Path> path_of(const std::vector<std::size_t>& corners, std::size_t label, std::size_t before,
-                              std::size_t after);
-  std::optional<Path> path_by_corner(const std::vector<std::size_t>& corners, std::size_t label, std::size_t before,
-                                     std::size_t after);
+  [[nodiscard]] Path straight_path(const std::vector<std::size_t>& corners, std::size_t label) const;
+  [[nodiscard]] Path turning_path(const std::vector<std::size_t>& corners, const RunLabels& labels) const;
+  bool add_corner(const std::vector<std::size_t>& corners, const RunLabels& labels);
   bool add_polygon(const std::vector<std::size_t>& corners, const Side& like);
   void add_line(std::size_t from, std::size_t to);
   void add_triangle(const Vec3& a, const Vec3& b, const Vec3& c);
@@ -191,51 +194,54 @@ std::size_t GapFiller::nearest_end(std::size_t between, const Vec3& point) const
   return nearest;
 }
 
-// Where lines meet in a corner of the run, there is no new one.
-std::optional<GapFiller::Path> GapFiller::path_by_corner(const std::vector<std::size_t>& corners, std::size_t label,
-                                                         std::size_t before, std::size_t after) {
-  const std::size_t last = corners.size() - 1;
+// Between two runs in one plane, along the one line where it meets that of the run.
+GapFiller::Path GapFiller::straight_path(const std::vector<std::size_t>& corners, std::size_t label) const {
   Path path;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (i == 0 || i + 1 == corners.size() || is_in(label, points_[corners[i]])) path.places.push_back(i);
+  }
+  return path;
+}
+
+// Where lines meet in a corner of the run, there is no new one.
+GapFiller::Path GapFiller::turning_path(const std::vector<std::size_t>& corners, const RunLabels& labels) const {
+  const std::size_t last = corners.size() - 1;
   std::size_t corner = SIZE_MAX, first_after = last;
   for (std::size_t i = 0; i <= last; ++i) {
     const Vec3& p = points_[corners[i]];
-    const bool in_before = i == 0 || is_in(before, p), in_after = i == last || is_in(after, p);
+    const bool in_before = i == 0 || is_in(labels.before, p), in_after = i == last || is_in(labels.after, p);
     if (in_before && in_after && corner == SIZE_MAX) corner = i;
     if (corner == SIZE_MAX && in_after) first_after = std::min(first_after, i);
   }
+  Path path;
+  path.has_new_corner = corner == SIZE_MAX;
+  const std::size_t turn = path.has_new_corner ? first_after : corner;
   for (std::size_t i = 0; i <= last; ++i) {
-    const Vec3& p = points_[corners[i]];
-    const bool is_first_part = corner == SIZE_MAX ? i < first_after : i < corner;
-    const bool is_on = i == 0 || i == last || i == corner || is_in(is_first_part ? before : after, p);
-    if (i == (corner == SIZE_MAX ? first_after : corner)) path.turn = path.places.size();
+    const bool is_on =
+        i == 0 || i == last || i == corner || is_in(i < turn ? labels.before : labels.after, points_[corners[i]]);
+    if (i == turn) path.turn = path.places.size();
     if (is_on) path.places.push_back(i);
   }
-  if (corner != SIZE_MAX) return path;
-  path.has_new_corner = true;
-  if (filled_.corners.size() >= limits_.new_corners) return std::nullopt;
-  const std::array planes{labels_[label].plane, labels_[before].plane, labels_[after].plane};
+  return path;
+}
+
+// That in which lines turn, where the three planes meet. False where there is none near the run and on the mesh, or no
+// other one is allowed.
+bool GapFiller::add_corner(const std::vector<std::size_t>& corners, const RunLabels& labels) {
+  if (filled_.corners.size() >= limits_.new_corners) return false;
+  const std::array planes{labels_[labels.own].plane, labels_[labels.before].plane, labels_[labels.after].plane};
   const Vec3 &from = points_[corners.front()], &to = points_[corners.back()];
   std::optional<Vec3> point = meeting_point(planes, 0.5 * from + 0.5 * to);
-  if (!point) return std::nullopt;
+  if (!point) return false;
   if (limits_.single_precision) point = rounded_to_float(*point);
   const auto is_near = [&](std::size_t end) {
     const Vec3 step = *point - points_[end];
     return dot(step, step) <= limits_.reach * limits_.reach;
   };
-  if (std::ranges::none_of(corners, is_near)) return std::nullopt;
-  if (!limits_.are_on_mesh({&*point, 1})) return std::nullopt;
+  if (std::ranges::none_of(corners, is_near)) return false;
+  if (!limits_.are_on_mesh({&*point, 1})) return false;
   points_.push_back(*point);
-  return path;
-}
-
-std::optional<GapFiller::Path> GapFiller::path_of(const std::vector<std::size_t>& corners, std::size_t label,
-                                                  std::size_t before, std::size_t after) {
-  if (before != after) return path_by_corner(corners, label, before, after);
-  Path path;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    if (i == 0 || i + 1 == corners.size() || is_in(before, points_[corners[i]])) path.places.push_back(i);
-  }
-  return path;
+  return true;
 }
 
 // None longer than half of the reach; not too many. `square`: of the length of the whole.
@@ -267,28 +273,30 @@ bool GapFiller::cut_off(const Run& run) {
   const Side before = side(run.first + sides_.size() - 1), after = side(run.first + run.sides), here = side(run.first);
   std::vector<std::size_t> corners;
   for (std::size_t i = 0; i <= run.sides; ++i) corners.push_back(side(run.first + i).corner);
-  const std::size_t points = points_.size();
-  const std::optional<Path> path = path_of(corners, here.label, before.label, after.label);
-  if (!path) return false;
+  const RunLabels labels{here.label, before.label, after.label};
+  const Path path =
+      labels.before == labels.after ? straight_path(corners, labels.before) : turning_path(corners, labels);
+  const std::size_t new_corner = points_.size();
+  if (path.has_new_corner && !add_corner(corners, labels)) return false;
 
   std::vector<Side> line;
   const auto add_to_line = [&](std::size_t corner, const Side& like) {
     line.push_back({corner, like.label, like.source});
   };
-  for (std::size_t n = 0; n + 1 < path->places.size(); ++n) {
-    const std::size_t from = path->places[n], to = path->places[n + 1];
-    const bool turns = path->has_new_corner && n + 1 == path->turn;
+  for (std::size_t n = 0; n + 1 < path.places.size(); ++n) {
+    const std::size_t from = path.places[n], to = path.places[n + 1];
+    const bool turns = path.has_new_corner && n + 1 == path.turn;
     std::vector<std::size_t> polygon(corners.begin() + static_cast<std::ptrdiff_t>(from),
                                      corners.begin() + static_cast<std::ptrdiff_t>(to) + 1);
-    add_to_line(corners[from], n < path->turn ? before : after);
+    add_to_line(corners[from], n < path.turn ? before : after);
     if (turns) {
-      polygon.push_back(points);
-      add_to_line(points, after);
+      polygon.push_back(new_corner);
+      add_to_line(new_corner, after);
     }
     if (polygon.size() < 3) continue;
     if (turns) {
-      add_line(corners[from], points);
-      add_line(points, corners[to]);
+      add_line(corners[from], new_corner);
+      add_line(new_corner, corners[to]);
     } else {
       add_line(corners[from], corners[to]);
     }
@@ -297,14 +305,14 @@ bool GapFiller::cut_off(const Run& run) {
   std::rotate(sides_.begin(), sides_.begin() + static_cast<std::ptrdiff_t>(run.first), sides_.end());
   sides_.erase(sides_.begin(), sides_.begin() + static_cast<std::ptrdiff_t>(run.sides));
   sides_.insert(sides_.begin(), line.begin(), line.end());
-  if (path->has_new_corner) filled_.corners.push_back(points_.back());
+  if (path.has_new_corner) filled_.corners.push_back(points_[new_corner]);
   return true;
 }
 
 bool GapFiller::add_polygon(const std::vector<std::size_t>& corners, const Side& like) {
+  if (corners.size() < 3) return true;  // two sides that meet
   std::vector<Vec3> points;
   for (const std::size_t corner : corners) points.push_back(points_[corner]);
-  if (corners.size() < 3) return true;  // two sides that meet
   const std::vector<Triangle> triangles = best_triangulation(points, labels_[like.label].plane.normal);
   if (triangles.empty()) return false;
   for (const auto& [a, b, c] : triangles) {

@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <iterator>
 #include <mutex>
-#include <numeric>
 #include <span>
 #include <utility>
 
@@ -20,6 +19,7 @@
 #include "core/mesh/disjoint_sets.h"
 #include "core/mesh/face_edges.h"
 #include "core/mesh/opposite_faces.h"
+#include "core/orientation/box_pairs.h"
 #include "core/orientation/nesting.h"
 
 namespace raycone {
@@ -239,18 +239,8 @@ class ClosedComponents {
   [[nodiscard]] std::vector<bool> overlapping_another(const std::vector<Part>& parts) const {
     std::vector<Box> boxes;
     for (const Part& part : parts) boxes.push_back(bounding_box(part.surface.faces, mesh_.vertices));
-    std::vector<std::uint32_t> order(parts.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::ranges::sort(order, {}, [&](std::uint32_t i) { return boxes[i].lower.x; });
     std::vector<bool> overlaps(parts.size(), false);
-    std::vector<std::uint32_t> met;
-    for (const std::uint32_t i : order) {
-      std::erase_if(met, [&](std::uint32_t j) { return boxes[j].upper.x < boxes[i].lower.x; });
-      for (const std::uint32_t j : met) {
-        if (overlap(boxes[i], boxes[j])) overlaps[i] = overlaps[j] = true;
-      }
-      met.push_back(i);
-    }
+    for_each_overlapping_pair(boxes, [&](std::uint32_t i, std::uint32_t j) { overlaps[i] = overlaps[j] = true; });
     return overlaps;
   }
 

@@ -1,7 +1,6 @@
 #include "core/orientation/nesting.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <functional>
 #include <numeric>
@@ -13,42 +12,19 @@
 #include "core/data/triangle_mesh.h"
 #include "core/machine/threads.h"
 #include "core/mesh/ray_grid.h"
+#include "core/orientation/box_pairs.h"
 #include "core/orientation/ray_sums.h"
 
 namespace raycone {
 namespace {
 
-// That along which the fewest boxes lie beside each other: of all parts in a plane, one within it.
-int axis_to_sweep(const std::vector<Box>& boxes) {
-  Box all = empty_box();
-  for (const Box& box : boxes) extend(all, box);
-  std::array<double, 3> beside{};  // their extents in all, in units of that of all together
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto half_extent = [n = static_cast<int>(axis)](const Box& box) {  // by halves, which do not overflow
-      return box.upper[n] / 2 - box.lower[n] / 2;
-    };
-    for (const Box& box : boxes)
-      beside[axis] += half_extent(box) < half_extent(all) ? half_extent(box) / half_extent(all) : 1.0;
-  }
-  return static_cast<int>(std::ranges::min_element(beside) - beside.begin());
-}
-
 // For each box those that hold it.
 std::vector<std::vector<std::uint32_t>> boxes_around(const std::vector<Box>& boxes) {
-  const int axis = axis_to_sweep(boxes);
-  std::vector<std::uint32_t> order(boxes.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(boxes[i].lower[axis], i); });
   std::vector<std::vector<std::uint32_t>> around(boxes.size());
-  std::vector<std::uint32_t> met;
-  for (const std::uint32_t i : order) {
-    std::erase_if(met, [&](std::uint32_t j) { return boxes[j].upper[axis] < boxes[i].lower[axis]; });
-    for (const std::uint32_t j : met) {
-      if (contains(boxes[j], boxes[i])) around[i].push_back(j);
-      if (contains(boxes[i], boxes[j])) around[j].push_back(i);
-    }
-    met.push_back(i);
-  }
+  for_each_overlapping_pair(boxes, [&](std::uint32_t i, std::uint32_t j) {
+    if (contains(boxes[i], boxes[j])) around[j].push_back(i);
+    if (contains(boxes[j], boxes[i])) around[i].push_back(j);
+  });
   return around;
 }
 

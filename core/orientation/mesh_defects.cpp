@@ -1,13 +1,9 @@
 #include "core/orientation/mesh_defects.h"
 
-#include <emmintrin.h>
-
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <iterator>
-#include <mutex>
 #include <span>
 #include <utility>
 
@@ -20,6 +16,7 @@
 #include "core/mesh/face_edges.h"
 #include "core/mesh/opposite_faces.h"
 #include "core/orientation/box_pairs.h"
+#include "core/orientation/closed_components.h"
 #include "core/orientation/nesting.h"
 
 namespace raycone {
@@ -52,104 +49,23 @@ std::uint64_t count_inconsistent_edges(const TriangleMesh& mesh, const std::vect
   return static_cast<std::uint64_t>(std::ranges::count(doubles, 2U, &DoubleEdge::uses));
 }
 
-// Six times a signed volume, and what rounding may have done to it.
-struct Volume {
-  double sum = 0.0;
-  double terms = 0.0;  // sum of the absolute values of all products
-  std::uint64_t faces = 0;
-
-  Volume& operator+=(const Volume& other) {
-    sum += other.sum;
-    terms += other.terms;
-    faces += other.faces;
-    return *this;
-  }
-  [[nodiscard]] int sure_sign() const { return sure_volume_sign(sum, terms, faces); }
-};
-
-// Of the prism between a face and the plane x = from.x: the sum over a closed surface does not depend on the plane.
-Volume volume_of(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& from) {
-  const double x1 = a.x - from.x, x2 = b.x - from.x, x3 = c.x - from.x;
-  // y and z together: this is most of what it costs to tell what is reversed
-  const __m128d first = _mm_loadu_pd(&a.y), second = _mm_sub_pd(_mm_loadu_pd(&b.y), first),
-                third = _mm_sub_pd(_mm_loadu_pd(&c.y), first);
-  const __m128d products = _mm_mul_pd(second, _mm_shuffle_pd(third, third, 1));
-  const double forth = _mm_cvtsd_f64(products), back = _mm_cvtsd_f64(_mm_unpackhi_pd(products, products));
-  return {(x1 + x2 + x3) * (forth - back),
-          (std::abs(x1) + std::abs(x2) + std::abs(x3)) * (std::abs(forth) + std::abs(back) + kVolumeUnderflow), 1};
-}
-
-// Of a closed mesh of one component, in any order: only its sure sign is used.
-Volume volume_of(const TriangleMesh& mesh) {
-  constexpr std::size_t kGrain = std::size_t{1} << 14;
-  constexpr std::size_t kAhead = 16;  // triangles: their vertices may be anywhere in memory
-  const Vec3 from = mesh.vertices[mesh.triangles.front()[0]];
-  Volume whole;
-  std::mutex adding;
-  parallel_for(mesh.triangles.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    Volume part;
-    for (std::size_t i = begin; i < end; ++i) {
-      if (i + kAhead < end) {
-        for (const std::uint32_t v : mesh.triangles[i + kAhead]) __builtin_prefetch(&mesh.vertices[v]);
-      }
-      const Triangle& t = mesh.triangles[i];
-      part += volume_of(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]], from);
-    }
-    const std::lock_guard lock(adding);
-    whole += part;
-  });
-  return whole;
-}
-
-// The closed components of a mesh, and which of them are reversed.
-class ClosedComponents {
+// Closed components of negative volume that lie within no other one.
+class ReversedComponents {
  public:
-  // `opposite`: opposite_faces(mesh).
-  ClosedComponents(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges, const Components& components,
-                   const std::vector<std::uint32_t>& opposite)
-      : mesh_(mesh), opposite_(opposite), components_(components), open_(components.count, false) {
-    for (const ExteriorEdge& edge : edges) open_[components_.of_vertex[edge.from]] = true;
-    if (std::ranges::count(open_, false) == 0) return;
-    add_volumes();
-    set_signs();
-  }
+  ReversedComponents(const TriangleMesh& mesh, const Components& components, const ClosedComponents& closed)
+      : mesh_(mesh), components_(components), closed_(closed) {}
 
-  [[nodiscard]] std::uint64_t count_reversed() const {
-    const auto negative = static_cast<std::uint64_t>(std::ranges::count(signs_, -1));
+  [[nodiscard]] std::uint64_t count() const {
+    const std::uint64_t negative = closed_.count_negative();
     if (negative == 0 || components_.count == 1) return negative;
     std::vector<Part> parts = closed_components();
     const std::vector<std::uint32_t> outermost = outermost_negative(parts);
     if (outermost.empty()) return 0;
     const std::vector<bool> may_be_several = overlapping_another(parts);
-    std::uint64_t reversed = 0;
-    std::vector<Triangle> in_doubt;
-    for (const std::uint32_t n : outermost) {
-      if (!may_be_several[n]) {
-        ++reversed;
-        continue;
-      }
-      in_doubt.insert(in_doubt.end(), parts[n].surface.faces.begin(), parts[n].surface.faces.end());
-      parts[n].surface.faces.clear();
-    }
-    if (in_doubt.empty()) return reversed;
-    std::erase_if(parts, [](const Part& part) { return part.surface.faces.empty(); });
-    for (Part& part : parts) part.is_negative = false;  // settled
-    std::ranges::move(parts_of(in_doubt), std::back_inserter(parts));
-    std::vector<std::uint32_t> components;
-    for (const std::uint32_t n : outermost_negative(parts)) components.push_back(parts[n].component);
-    std::ranges::sort(components);
-    return reversed +
-           static_cast<std::uint64_t>(std::unique(components.begin(), components.end()) - components.begin());
-  }
-
-  // Precondition: no component is open.
-  [[nodiscard]] bool whole_is_negative() const {
-    if (std::ranges::count(signs_, -1) == 0) return false;
-    if (std::ranges::count(signs_, 1) == 0) return true;
-    Volume whole;
-    for (const Volume& volume : volumes_) whole += volume;
-    if (const int sign = whole.sure_sign(); sign != 0) return sign < 0;
-    return volume_sign(mesh_.triangles, mesh_.vertices) < 0;
+    std::vector<std::uint32_t> in_doubt;
+    std::ranges::copy_if(outermost, std::back_inserter(in_doubt), [&](std::uint32_t n) { return may_be_several[n]; });
+    const std::uint64_t reversed = outermost.size() - in_doubt.size();
+    return in_doubt.empty() ? reversed : reversed + count_by_parts(std::move(parts), in_doubt);
   }
 
  private:
@@ -162,63 +78,32 @@ class ClosedComponents {
 
   [[nodiscard]] std::uint32_t component_of(const Triangle& t) const { return components_.of_vertex[t[0]]; }
 
-  // Each from a vertex of its own: a component far from the origin keeps its digits.
-  void add_volumes() {
-    volumes_.resize(components_.count);
-    if (components_.count == 1) {
-      volumes_[0] = volume_of(mesh_);
-      return;
+  // Of the components in doubt, by number in `parts`, those that have a part that is reversed by itself.
+  [[nodiscard]] std::uint64_t count_by_parts(std::vector<Part> parts,
+                                             const std::vector<std::uint32_t>& in_doubt) const {
+    std::vector<Triangle> faces;
+    for (const std::uint32_t n : in_doubt) {
+      faces.insert(faces.end(), parts[n].surface.faces.begin(), parts[n].surface.faces.end());
+      parts[n].surface.faces.clear();
     }
-    std::vector<Vec3> from(components_.count);
-    for (const Triangle& t : mesh_.triangles) {
-      const std::uint32_t component = component_of(t);
-      if (open_[component]) continue;
-      const Vec3& a = mesh_.vertices[t[0]];
-      Volume& volume = volumes_[component];
-      if (volume.faces == 0) from[component] = a;
-      volume += volume_of(a, mesh_.vertices[t[1]], mesh_.vertices[t[2]], from[component]);
-    }
-  }
-
-  void set_signs() {
-    signs_.assign(components_.count, 0);
-    std::vector<bool> in_doubt(components_.count, false);
-    for (std::uint32_t c = 0; c < components_.count; ++c) {
-      signs_[c] = volumes_[c].sure_sign();
-      in_doubt[c] = !open_[c] && signs_[c] == 0;
-    }
-    if (std::ranges::count(in_doubt, true) > 0) set_signs_exactly(in_doubt);
-  }
-
-  // Faces that cancel are left out: nearly all doubt is about double-sided surfaces, where they are all.
-  void set_signs_exactly(const std::vector<bool>& in_doubt) {
-    std::vector<std::pair<std::uint32_t, Triangle>> faces;  // with their components
-    auto left_out = opposite_.begin();
-    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-      const std::uint32_t component = component_of(mesh_.triangles[i]);
-      const bool cancels = left_out != opposite_.end() && *left_out == i;
-      if (cancels) ++left_out;
-      if (!cancels && in_doubt[component]) faces.emplace_back(component, mesh_.triangles[i]);
-    }
-    std::ranges::sort(faces);
-    for (auto it = faces.begin(); it != faces.end();) {
-      const std::uint32_t component = it->first;
-      std::vector<Triangle> triangles;
-      for (; it != faces.end() && it->first == component; ++it) triangles.push_back(it->second);
-      signs_[component] = volume_sign(triangles, mesh_.vertices);
-    }
+    std::erase_if(parts, [](const Part& part) { return part.surface.faces.empty(); });
+    for (Part& part : parts) part.is_negative = false;  // settled
+    std::ranges::move(parts_of(faces), std::back_inserter(parts));
+    std::vector<std::uint32_t> components;
+    for (const std::uint32_t n : outermost_negative(parts)) components.push_back(parts[n].component);
+    std::ranges::sort(components);
+    return static_cast<std::uint64_t>(std::unique(components.begin(), components.end()) - components.begin());
   }
 
   [[nodiscard]] std::vector<Part> closed_components() const {
     std::vector<Part> parts(components_.count);
     for (const Triangle& t : mesh_.triangles) {
-      if (const std::uint32_t component = component_of(t); !open_[component]) {
-        parts[component].surface.faces.push_back(t);
-      }
+      const std::uint32_t component = component_of(t);
+      if (closed_.is_closed(component)) parts[component].surface.faces.push_back(t);
     }
     for (std::uint32_t c = 0; c < components_.count; ++c) {
       parts[c].component = c;
-      parts[c].is_negative = signs_[c] < 0;
+      parts[c].is_negative = closed_.is_negative(c);
     }
     std::erase_if(parts, [](const Part& part) { return part.surface.faces.empty(); });
     return parts;
@@ -263,11 +148,8 @@ class ClosedComponents {
   }
 
   const TriangleMesh& mesh_;
-  const std::vector<std::uint32_t>& opposite_;
   const Components& components_;
-  std::vector<bool> open_;
-  std::vector<Volume> volumes_;
-  std::vector<int> signs_;
+  const ClosedComponents& closed_;
 };
 
 }  // namespace
@@ -285,7 +167,7 @@ MeshDefects mesh_defects(const TriangleMesh& welded, const std::vector<ExteriorE
   defects.inconsistent_edges = count_inconsistent_edges(welded, edges);
   defects.cancelling_pairs = opposite.size() / 2;
   const ClosedComponents closed(welded, edges, components, opposite);
-  defects.reversed_components = closed.count_reversed();
+  defects.reversed_components = ReversedComponents(welded, components, closed).count();
   defects.negative_volume = edges.empty() && closed.whole_is_negative();
   return defects;
 }

@@ -496,7 +496,7 @@ MUTANTS = [
         ("core/exact/volume_sign.cpp", "(static_cast<double>(triangles) + 16.0) * 0x1p-52 * terms + 0x1p-900",
          "0.0")]),
     Mutant("volume_underflows", "the sign of a volume is exact where products underflow", [
-        ("core/orientation/mesh_defects.cpp", "(std::abs(forth) + std::abs(back) + kVolumeUnderflow)", "(std::abs(forth) + std::abs(back))")]),
+        ("core/orientation/closed_components.cpp", "(std::abs(forth) + std::abs(back) + kVolumeUnderflow)", "(std::abs(forth) + std::abs(back))")]),
     Mutant("touching_is_within", "a vertex on another component does not tell whether it lies within", [
         ("core/orientation/nesting.cpp", "if (!sums[at].is_near) verdicts[n].clear", "verdicts[n].clear")]),
     Mutant("vertices_alone_tell", "points beside faces tell what lies within, too", [

@@ -7,6 +7,7 @@
 
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/disjoint_sets.h"
+#include "core/surface/closed_by_caps.h"
 #include "core/surface/fill_check.h"
 #include "core/surface/hole_fill.h"
 #include "core/surface/mesh_border.h"

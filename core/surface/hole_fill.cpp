@@ -9,10 +9,9 @@
 #include <tuple>
 #include <utility>
 
-#include "core/boundary/boundary.h"
-#include "core/boundary/caps.h"
 #include "core/data/single_precision.h"
 #include "core/distance/distance.h"
+#include "core/mesh/exterior_edges.h"
 #include "core/surface/certificate.h"
 #include "core/surface/fill_faces.h"
 #include "core/surface/line_roots.h"
@@ -35,11 +34,11 @@ constexpr double kBeyond = 0.5;
 // A node this near is on the fill. If nodes are too far from it, it is not why they are on the wrong side; others of
 // these are not, if they are at most so far around.
 constexpr double kOff = 0x1p-20, kFarthest = 2.0, kIsland = 0.875;
-// The weight of a corner for a place to be next to the side across from it.
+// The barycentric coordinate of a corner below which a point is next to the side across from it.
 constexpr double kNextToSide = 0.05;
 
-// By how much of each corner the nearest point of a triangle is made up, but for rounding.
-Vec3 nearest_place(const std::array<Vec3, 3>& corners, const Vec3& p) {
+// The barycentric coordinates of the point of a triangle that is nearest to p, but for rounding.
+Vec3 barycentric_of_nearest(const std::array<Vec3, 3>& corners, const Vec3& p) {
   const Vec3 u = corners[1] - corners[0], v = corners[2] - corners[0], w = p - corners[0];
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
   const double determinant = uu * vv - uv * uv;
@@ -267,7 +266,7 @@ class ThresholdFit {
   [[nodiscard]] std::optional<NearPart> near_part(std::uint32_t face, const Vec3& point,
                                                   std::span<const std::array<std::uint32_t, 3>> sides) const {
     const auto [a, b, c] = fill_[face];
-    const Vec3 weights = nearest_place({fill_.at(a), fill_.at(b), fill_.at(c)}, point);
+    const Vec3 weights = barycentric_of_nearest({fill_.at(a), fill_.at(b), fill_.at(c)}, point);
     const Vec3 away = point - (weights.x * fill_.at(a) + weights.y * fill_.at(b) + weights.z * fill_.at(c));
     if (!(norm(away) <= kFarthest * voxel_)) return std::nullopt;
     Part part{face};
@@ -357,21 +356,6 @@ class ThresholdFit {
 };
 
 }  // namespace
-
-TriangleMesh closed_by_caps(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges) {
-  const TriangleMesh caps = caps_and_strips(Boundary(mesh, edges));
-  std::vector<std::uint32_t> ends;
-  for (const ExteriorEdge& edge : edges) ends.insert(ends.end(), {edge.from, edge.to});
-  const auto is_before = [](const Vec3& a, const Vec3& b) { return lexicographic_order(a, b) < 0; };
-  const auto position = [&](std::uint32_t vertex) { return mesh.vertices[vertex]; };
-  std::ranges::sort(ends, is_before, position);
-  const auto end_at = [&](const Vec3& p) { return *std::ranges::lower_bound(ends, p, is_before, position); };
-  std::vector<std::uint32_t> number(caps.vertices.size());
-  std::ranges::transform(caps.vertices, number.begin(), end_at);
-  TriangleMesh closed = mesh;
-  for (const auto& [a, b, c] : caps.triangles) closed.triangles.push_back({number[a], number[c], number[b]});
-  return closed;
-}
 
 bool fit_to_threshold(SurfaceMesh& surface, const RuleAlong& along, const NodeSet& inside, const FillLimits& limits) {
   return ThresholdFit(surface, along, inside, limits).fit();

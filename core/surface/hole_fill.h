@@ -1,20 +1,13 @@
-// Faces that close the holes of an open mesh.
+// Faces without source, which close the holes of a mesh, moved to where its winding number says.
 #pragma once
 
 #include <cstddef>
-#include <vector>
 
-#include "core/data/triangle_mesh.h"
-#include "core/mesh/exterior_edges.h"
 #include "core/surface/edge_roots.h"
 #include "core/surface/node_set.h"
 #include "core/surface/surface_mesh.h"
 
 namespace raycone {
-
-// The triangles of an open mesh, and behind them caps of its holes (core/boundary/caps.h): together they are closed.
-// Preconditions: `mesh` is welded, its used vertices are finite; `edges` are its exterior edges.
-[[nodiscard]] TriangleMesh closed_by_caps(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges);
 
 struct FillLimits {
   std::size_t most_faces = 0;     // without source

@@ -19,6 +19,7 @@
 #include "core/mesh/used_part.h"
 #include "core/mesh/weld.h"
 #include "core/surface/certificate.h"
+#include "core/surface/closed_by_caps.h"
 #include "core/surface/fill_check.h"
 #include "core/surface/fill_faces.h"
 #include "core/surface/mesh_as_surface.h"

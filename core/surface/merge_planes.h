@@ -21,6 +21,7 @@ struct MergedFaces {
 };
 
 class BrickMerger;
+struct SurfaceBricks;
 
 // The faces of a closed surface with vertices pulled into neighbours along edges, wherever all faces around stay in the
 // planes that they are in (`input`'s, where they have a source in it): flat parts get larger faces, straight edges
@@ -36,9 +37,6 @@ class PlaneMerger {
   [[nodiscard]] MergedFaces merge(const std::vector<bool>& kept);
 
  private:
-  friend class BrickMerger;
-  struct Work;
-  struct Bricks;
   struct SecondPass;
   void merge_first_bricks(const std::vector<bool>& kept);
   void merge_second_bricks(const std::vector<bool>& kept, BrickMerger& merger, MergedFaces& merged,
@@ -49,7 +47,7 @@ class PlaneMerger {
   const Lattice& lattice_;
   MergeLimits limits_;
   // Of the last call, when each brick was merged by itself; nothing before the first one.
-  std::shared_ptr<const Bricks> bricks_;
+  std::shared_ptr<const SurfaceBricks> bricks_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> into_;
   std::vector<std::uint8_t> settled_;

@@ -578,7 +578,7 @@ MUTANTS = [
         ("core/surface/patch_merger.cpp", "return planes_[plane].distance(p) <= limits_.most;",
          "return planes_[plane].distance(p) <= 1e9 * limits_.most;")]),
     Mutant("bricks_own_borders", "vertices that have faces in two bricks are neither's", [
-        ("core/surface/merge_planes.cpp", "if (!is_own) of_corner.store(kNone, std::memory_order_relaxed);", "(void)is_own;")]),
+        ("core/surface/surface_bricks.cpp", "if (!is_own) of_corner.store(SurfaceBricks::kNone, std::memory_order_relaxed);", "(void)is_own;")]),
     Mutant("settled_at_borders", "what a brick may not be pulled into, another may", [
         ("core/surface/patch_merger.cpp", "    if (roles_[target] == VertexRole::kForeign) {\n      by_geometry = false;\n",
          "    if (roles_[target] == VertexRole::kForeign) {\n")]),

@@ -25,8 +25,6 @@ double longest_square(const Vec3& u, const Vec3& v) {
 
 }  // namespace
 
-double PatchMerger::Plane::distance(const Vec3& p) const { return std::abs(dot(normal, p - point)); }
-
 template <class Visit>
 void PatchMerger::for_each_face(std::uint32_t v, const Visit& visit) const {
   for (Corner corner = first_[v], next = kNoCorner; corner != kNoCorner; corner = next) {
@@ -39,10 +37,10 @@ void PatchMerger::for_each_face(std::uint32_t v, const Visit& visit) const {
 
 PatchMerger::PatchMerger(const SurfacePatch& patch, const TriangleMesh& input, const MergeLimits& limits)
     : patch_(patch),
-      input_(input),
       limits_(limits),
       roles_(patch.roles),
       faces_(patch.triangles.size()),
+      planes_(input),
       first_(patch.vertices.size(), kNoCorner),
       state_(patch.vertices.size()),
       touched_(patch.vertices.size(), 0),
@@ -92,72 +90,27 @@ void PatchMerger::spread(VertexRole role) {
   }
 }
 
-// Faces of one source mostly follow each other, but bricks have thousands of sources.
-PatchMerger::SourcePlanes& PatchMerger::planes_of_source(std::int32_t source) {
-  if (sources_ > 0 && source_planes_[last_source_].source == source) return source_planes_[last_source_];
-  if (2 * sources_ >= source_planes_.size()) grow_sources();
-  const std::size_t mask = source_planes_.size() - 1;
-  std::size_t place = static_cast<std::uint32_t>(source) * std::size_t{0x9E3779B1} >> 7U & mask;
-  while (source_planes_[place].source != source && source_planes_[place].source != kNoSource)
-    place = (place + 1) & mask;
-  last_source_ = place;
-  SourcePlanes& planes = source_planes_[place];
-  if (planes.source == kNoSource) {
-    planes.source = source;
-    ++sources_;
-  }
-  return planes;
-}
-
-void PatchMerger::grow_sources() {
-  constexpr std::size_t kLeast = 256;
-  std::vector<SourcePlanes> before(std::max(kLeast, 2 * source_planes_.size()));
-  before.swap(source_planes_);
-  sources_ = 0;
-  for (const SourcePlanes& planes : before) {
-    if (planes.source != kNoSource) planes_of_source(planes.source) = planes;
-  }
-}
-
-std::uint32_t PatchMerger::add_plane(const Plane& plane) {
-  planes_.push_back(plane);
-  return static_cast<std::uint32_t>(planes_.size() - 1);
-}
-
-std::uint32_t PatchMerger::plane_of_source(std::int32_t source, const Vec3& front) {
-  auto& [known, own, turned] = planes_of_source(source);
-  if (own == kNoPlane) {
-    const Triangle& t = input_.triangles[static_cast<std::size_t>(source)];
-    const Vec3& a = input_.vertices[t[0]];
-    own = add_plane({a, unit_normal(a, input_.vertices[t[1]], input_.vertices[t[2]]), true});
-  }
-  const auto [point, normal, is_of_source] = planes_[own];
-  if (!(dot(normal, front) < 0.0)) return own;
-  if (turned == kNoPlane) turned = add_plane({point, -1.0 * normal, true});
-  return turned;
-}
-
 // Faces of one source have one plane, the source's, as far as their corners are in it. Fronts are told apart. Others
 // are parallel to it, where points at nodes were moved off it by as much, or have a plane of their own.
 std::uint32_t PatchMerger::plane_of(std::uint32_t face) {
   const Triangle& t = faces_[face].corners;
   const Vec3 &a = position(t[0]), &b = position(t[1]), &c = position(t[2]);
   if (patch_.sources[face] != kHole) {
-    const auto has_corners = [&](const Plane& plane) {
+    const auto has_corners = [&](const PatchPlane& plane) {
       return std::ranges::all_of(t, [&](std::uint32_t v) { return plane.distance(position(v)) <= limits_.most; });
     };
-    const std::uint32_t of_source = plane_of_source(patch_.sources[face], cross(b - a, c - a));
+    const std::uint32_t of_source = planes_.of_source(patch_.sources[face], cross(b - a, c - a));
     if (has_corners(planes_[of_source])) return of_source;
-    const Plane parallel{a, planes_[of_source].normal, false};
-    if (has_corners(parallel)) return add_plane(parallel);
+    const PatchPlane parallel{a, planes_[of_source].normal, false};
+    if (has_corners(parallel)) return planes_.add(parallel);
   }
-  return add_plane({a, unit_normal(a, b, c), false});
+  return planes_.add({a, unit_normal(a, b, c), false});
 }
 
 // Faces change only when their planes are known: those around a vertex are looked at before it is pulled.
 std::uint32_t PatchMerger::plane_at(std::uint32_t face) {
   std::uint32_t& plane = faces_[face].plane;
-  if (plane == kNoPlane) plane = plane_of(face);
+  if (plane == PatchPlanes::kNoPlane) plane = plane_of(face);
   return plane;
 }
 

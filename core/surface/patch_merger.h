@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/surface/patch_planes.h"
 
 namespace raycone {
 
@@ -64,19 +65,6 @@ class PatchMerger {
     kGone,
   };
 
-  struct Plane {
-    Vec3 point, normal;
-    bool is_of_source;  // and so the same in any patch
-    [[nodiscard]] double distance(const Vec3& p) const;
-  };
-
-  static constexpr std::uint32_t kNoPlane = 0xFFFFFFFF;
-  struct SourcePlanes {
-    std::int32_t source = kNoSource;
-    std::uint32_t own = kNoPlane, turned = kNoPlane;  // with the source's own front, and with its back
-  };
-  static constexpr std::int32_t kNoSource = -2;
-
   // Of a face: four times its number, and the place of the vertex in it.
   using Corner = std::uint32_t;
   static constexpr Corner kNoCorner = 0xFFFFFFFF;
@@ -87,8 +75,8 @@ class PatchMerger {
   // All that walks around vertices ask of a face, in one line of the cache.
   struct alignas(32) Face {
     Triangle corners;
-    std::uint32_t plane = kNoPlane;  // kNoPlane where nobody has asked yet
-    std::array<Corner, 3> next;      // corners behind its own in the chains of their vertices
+    std::uint32_t plane = PatchPlanes::kNoPlane;  // none before somebody asks
+    std::array<Corner, 3> next;                   // corners behind its own in the chains of their vertices
     bool is_needle = false, is_hole = false, is_changed = false;
   };
 
@@ -105,12 +93,8 @@ class PatchMerger {
   [[nodiscard]] Corner& next_of(Corner corner) { return faces_[face_of(corner)].next[place_of(corner)]; }
 
   void spread(VertexRole role);
-  [[nodiscard]] SourcePlanes& planes_of_source(std::int32_t source);
-  void grow_sources();
-  [[nodiscard]] std::uint32_t add_plane(const Plane& plane);
   [[nodiscard]] std::uint32_t plane_of(std::uint32_t face);
   [[nodiscard]] std::uint32_t plane_at(std::uint32_t face);
-  [[nodiscard]] std::uint32_t plane_of_source(std::int32_t source, const Vec3& front);
   [[nodiscard]] bool is_needle(std::uint32_t face) const;
   [[nodiscard]] bool is_at_needle(std::uint32_t v) const;
   [[nodiscard]] std::optional<std::uint32_t> target_at_node(std::uint32_t v);
@@ -138,15 +122,11 @@ class PatchMerger {
   [[nodiscard]] bool keeps_topology(std::uint32_t target);
 
   const SurfacePatch& patch_;
-  const TriangleMesh& input_;
   MergeLimits limits_;
   std::vector<VertexRole> roles_;
   std::vector<Face> faces_;
-  std::vector<Plane> planes_;
-  std::vector<SourcePlanes> source_planes_;  // a hash table: linear probing, at most half full
-  std::size_t sources_ = 0;                  // in it
-  std::size_t last_source_ = 0;              // the place of the last one that was asked for
-  std::vector<Corner> first_;                // of each vertex; its other corners follow in a chain
+  PatchPlanes planes_;
+  std::vector<Corner> first_;  // of each vertex; its other corners follow in a chain
   std::vector<State> state_;
   std::vector<std::uint8_t> touched_;      // vertices: their faces are others than at first
   std::vector<std::uint8_t> by_geometry_;  // when last looked at, no neighbour was fit, whatever is around that

@@ -38,18 +38,19 @@ std::optional<OrderedSlab> ordered_slab(const ScaledMesh& mesh, const Lattice& l
 
 }  // namespace
 
-const ScaledMesh& mesh_for(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block) {
+ScaledRows scaled_rows(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block) {
   const auto first = [&](int axis) { return lattice.coordinate(axis, block.first[static_cast<std::size_t>(axis)]); };
-  return meshes.of_query(meshes.scaled().can_take(Vec3{first(0), first(1), first(2)}));
+  const ScaledMesh& mesh = meshes.of_query(meshes.scaled().can_take(Vec3{first(0), first(1), first(2)}));
+  return {lattice, block, mesh, rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); })};
 }
 
-void collect_crossings(const ScaledMesh& mesh, const Lattice& lattice, const LatticeBlock& block,
-                       const LatticeRows& rows, LatticeSums& sums) {
+void collect_crossings(const ScaledRows& part, LatticeSums& sums) {
+  const ScaledMesh& mesh = part.mesh;
   if (mesh.options().ray_engine == RayEngine::kScan) {
-    scan_triangles(mesh.mesh(), rows, ordered_slab(mesh, lattice, block), sums);
+    scan_triangles(mesh.mesh(), part.rows, ordered_slab(mesh, part.lattice, part.block), sums);
   } else {
     (void)mesh.rays();  // not within the loop over rows, whose threads would wait for one another
-    cast_rays(mesh, rows, sums);
+    cast_rays(mesh, part.rows, sums);
   }
   sums.arrange();
 }

@@ -14,12 +14,20 @@ namespace raycone {
 // Of loops that only finish rows or read what was found of them, some microseconds each.
 inline constexpr std::size_t kRowsPerTask = 16;
 
-// The scaled mesh where it can take the block's coordinates, the unscaled one where not: along each axis all or none.
-[[nodiscard]] const ScaledMesh& mesh_for(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block);
+// A block of a lattice, and its rows in the scale of the mesh that they are evaluated with.
+struct ScaledRows {
+  const Lattice& lattice;
+  const LatticeBlock& block;
+  const ScaledMesh& mesh;
+  LatticeRows rows;
+};
 
-// Collects and arranges the crossings of `rows`, those of the block, by the mesh's ray engine.
-void collect_crossings(const ScaledMesh& mesh, const Lattice& lattice, const LatticeBlock& block,
-                       const LatticeRows& rows, LatticeSums& sums);
+// With the scaled mesh where it can take the block's coordinates, the unscaled one where not: along each axis all or
+// none. All of them must stay while the result is used.
+[[nodiscard]] ScaledRows scaled_rows(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block);
+
+// Collects and arranges the crossings of the rows, by the mesh's ray engine.
+void collect_crossings(const ScaledRows& part, LatticeSums& sums);
 
 // Finishes all rows. Returns how many samples lie on the surface.
 std::uint64_t finish_all(const LatticeRows& rows, LatticeSums& sums);

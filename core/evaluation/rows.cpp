@@ -118,15 +118,16 @@ std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, Latti
 }
 
 // Of a block that the scaled mesh can take, by blocks of samples.
-Tally evaluate_part_by_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice,
-                              const LatticeBlock& block, const LatticeRows& rows, std::span<double> values,
+Tally evaluate_part_by_blocks(const ScaledRows& part, const LatticeAxes& axes, std::span<double> values,
                               std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+  const ScaledMesh& mesh = part.mesh;
+  const LatticeRows& rows = part.rows;
   const std::size_t samples = rows.xs.size();
   // Diagnostics take the crossings of each sample, and leave them in `values`.
   LatticeSums sums = diagnostics               ? LatticeSums(rows.size(), samples, values, diagnostics)
                      : mesh.counts_crossings() ? LatticeSums(rows.size(), samples)
                                                : LatticeSums(rows.size(), samples, {}, nullptr);
-  collect_crossings(mesh, lattice, block, rows, sums);
+  collect_crossings(part, sums);
   const std::uint64_t on_surface = finish_all(rows, sums);
   LatticeSums of_caps(rows.size(), samples, LatticeSums::OnSurface::kIgnore);
   sum_crossings(mesh.caps().mesh, rows, of_caps);
@@ -135,7 +136,7 @@ Tally evaluate_part_by_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, c
     return {diagnostics ? RowRuns(each) : sums.runs(row), of_caps.runs(row)};
   };
   // Bounds take a hundred times as long as values: a sample is done when it has its own.
-  evaluate_blocks(mesh, axes, lattice, block, crossings_of_row, values, diagnostics ? nullptr : done);
+  evaluate_blocks(mesh, axes, part.lattice, part.block, crossings_of_row, values, diagnostics ? nullptr : done);
   if (diagnostics) bound_all_errors(mesh, rows, values, done, *diagnostics);
   return {sums.ties(), on_surface};
 }
@@ -143,15 +144,16 @@ Tally evaluate_part_by_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, c
 // Of a block whose coordinates along each axis the scaled mesh can take all, or none of.
 Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block,
                     std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
-  const ScaledMesh& mesh = mesh_for(meshes, lattice, block);
-  const LatticeRows rows = rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); });
+  const ScaledRows part = scaled_rows(meshes, lattice, block);
+  const ScaledMesh& mesh = part.mesh;
+  const LatticeRows& rows = part.rows;
   const bool scaled = &mesh == &meshes.scaled();
   if (const std::optional<LatticeAxes> axes = scaled ? axes_for_blocks(mesh, lattice) : std::nullopt) {
-    return evaluate_part_by_blocks(mesh, *axes, lattice, block, rows, values, done, diagnostics);
+    return evaluate_part_by_blocks(part, *axes, values, done, diagnostics);
   }
   const bool counts = mesh.counts_crossings() || diagnostics;
   LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
-  collect_crossings(mesh, lattice, block, rows, sums);
+  collect_crossings(part, sums);
   if (!takes_far_field_on_lattice(mesh)) {
     const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics);
     return {sums.ties(), on_surface};

@@ -33,12 +33,12 @@ void set_sides_of_runs(const LatticeRows& rows, const Rule& rule, const LatticeS
 }
 
 // Where certificates do not pay: from the winding number of each sample.
-Tally sides_by_values(const ScaledMeshes& meshes, const ScaledMesh& mesh, const Rule& rule, const Lattice& lattice,
-                      const LatticeBlock& block, const LatticeRows& rows, std::span<std::uint8_t> sides,
-                      std::atomic<std::uint64_t>* done) {
+Tally sides_by_values(const ScaledMeshes& meshes, const ScaledRows& part, const Rule& rule,
+                      std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
+  const LatticeRows& rows = part.rows;
   std::vector<double> values(sides.size());
-  const Tally tally = evaluate_block(meshes, lattice, block, values, done, nullptr);
-  const MeshRule mesh_rule(mesh, rule);
+  const Tally tally = evaluate_block(meshes, part.lattice, part.block, values, done, nullptr);
+  const MeshRule mesh_rule(part.mesh, rule);
   const std::size_t samples = rows.xs.size();
   parallel_for(rows.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     SideSetter setter(mesh_rule, sides);
@@ -61,13 +61,14 @@ bool takes_values(const ScaledMesh& mesh, const LatticeBlock& block) {
 // Of a block whose coordinates along each axis the scaled mesh can take all, or none of.
 Tally evaluate_part(const ScaledMeshes& meshes, const Rule& rule, const Lattice& lattice, const LatticeBlock& block,
                     std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
-  const ScaledMesh& mesh = mesh_for(meshes, lattice, block);
-  const LatticeRows rows = rows_in_scale(lattice, block, [&](double x) { return mesh.to_scale(x); });
+  const ScaledRows part = scaled_rows(meshes, lattice, block);
+  const ScaledMesh& mesh = part.mesh;
+  const LatticeRows& rows = part.rows;
   if (!mesh.is_closed() && takes_values(mesh, block)) {
-    return sides_by_values(meshes, mesh, rule, lattice, block, rows, sides, done);
+    return sides_by_values(meshes, part, rule, sides, done);
   }
   LatticeSums crossings(rows.size(), rows.xs.size());
-  collect_crossings(mesh, lattice, block, rows, crossings);
+  collect_crossings(part, crossings);
   const Tally tally{crossings.ties(), finish_all(rows, crossings)};
   if (mesh.is_closed()) {
     set_sides_of_runs(rows, rule, crossings, sides, done);

@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "app/input/mesh_list.h"
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "app/process/usage_error.h"
 #include "io/files/enumerated.h"
 #include "io/files/file_error.h"

@@ -9,7 +9,7 @@
 #include <system_error>
 
 #include "app/batch/file_stamp.h"
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "io/files/file_error.h"
 #include "io/files/output_file.h"
 #include "io/files/read_file.h"

@@ -18,7 +18,6 @@
 #include "app/batch/results_files.h"
 #include "app/batch/svg_plot.h"
 #include "app/input/written_files.h"
-#include "app/process/limits.h"
 #include "app/process/messages.h"
 #include "app/process/progress.h"
 #include "app/process/usage_error.h"

@@ -29,7 +29,7 @@
 #include "app/input/run_limits.h"
 #include "app/input/written_files.h"
 #include "app/options/batch_command.h"
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "app/process/messages.h"
 #include "app/process/signals.h"
 #include "app/process/usage_error.h"

@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "app/process/limits.h"
+#include "app/process/default_threads.h"
 #include "app/process/usage_error.h"
 #include "app/text/parse_value.h"
 #include "io/files/ascii.h"

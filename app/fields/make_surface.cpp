@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "app/options/field_options.h"
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "core/distance/distance.h"
 #include "core/surface/mesh_as_surface.h"
 #include "core/surface/surface_measures.h"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "app/input/mesh_warnings.h"
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "app/process/messages.h"
 #include "core/mesh/normalize.h"
 #include "core/mesh/polygons.h"

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "app/process/usage_error.h"
 #include "io/files/file_error.h"
 #include "io/files/file_identity.h"

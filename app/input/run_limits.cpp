@@ -6,7 +6,8 @@
 #include <algorithm>
 #include <new>
 
-#include "app/process/limits.h"
+#include "app/process/default_threads.h"
+#include "app/process/memory_limit.h"
 #include "app/process/messages.h"
 #include "app/process/signals.h"
 #include "core/crossings/ray_caster.h"

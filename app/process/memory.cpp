@@ -25,9 +25,9 @@ constexpr int kKept = 1 << 26;
 
 std::atomic<std::uintptr_t> heap_end = 0;  // when it was looked at last
 
-// Asks for huge pages where the heap has grown. It grows by more than one block at a time (cap_memory() in limits.cpp),
-// so that most of what is new has not been touched. `block`: a new one. Blocks of other threads may have heaps of their
-// own, which stay as they are. Failures cost time only.
+// Asks for huge pages where the heap has grown. It grows by more than one block at a time (cap_memory() in
+// memory_limit.cpp), so that most of what is new has not been touched. `block`: a new one. Blocks of other threads may
+// have heaps of their own, which stay as they are. Failures cost time only.
 void follow_heap(std::uintptr_t block) {
   const auto end = reinterpret_cast<std::uintptr_t>(sbrk(0));
   if (block == 0 || block >= end || end == heap_end.load(std::memory_order_relaxed)) return;

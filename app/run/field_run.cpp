@@ -8,7 +8,7 @@
 
 #include "app/fields/verify.h"
 #include "app/input/mesh_warnings.h"
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "app/process/stopwatch.h"
 #include "app/report/json.h"
 #include "app/text/plain_text.h"

@@ -7,7 +7,7 @@
 
 #include "app/fields/label_check.h"
 #include "app/input/mesh_warnings.h"
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "app/process/stopwatch.h"
 #include "app/samples/slabs.h"
 #include "core/data/interval.h"

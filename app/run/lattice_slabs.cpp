@@ -1,6 +1,6 @@
 #include "app/run/lattice_slabs.h"
 
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "app/process/stopwatch.h"
 #include "app/run/field_run.h"
 #include "app/samples/disk_space.h"

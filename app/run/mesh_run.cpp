@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "app/input/mesh_input.h"
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "app/report/depfile.h"
 #include "app/report/json.h"
 

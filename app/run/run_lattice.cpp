@@ -15,7 +15,7 @@
 #include "app/input/grid_lattice.h"
 #include "app/input/mesh_warnings.h"
 #include "app/input/written_files.h"
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "app/process/stopwatch.h"
 #include "app/report/json.h"
 #include "app/run/field_run.h"

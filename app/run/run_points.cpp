@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "app/input/written_files.h"
-#include "app/process/limits.h"
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
 #include "app/run/field_run.h"

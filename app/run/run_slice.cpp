@@ -18,7 +18,7 @@
 #include "app/fields/label_volume.h"
 #include "app/input/written_files.h"
 #include "app/picture/slice_picture.h"
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "app/process/stopwatch.h"
 #include "app/process/version.h"
 #include "app/run/field_run.h"

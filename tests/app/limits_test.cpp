@@ -1,10 +1,11 @@
-// Limits read from made-up system directories, and their printing.
-#include "app/process/limits.h"
-
+// Threads and memory by default: control groups of made-up system directories, this machine, and what is refused.
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
+#include "app/process/cgroups.h"
+#include "app/process/default_threads.h"
+#include "app/process/memory_limit.h"
 #include "io/files/file_error.h"
 #include "io/files/readable_bytes.h"
 #include "tests/app/meshes.h"

@@ -10,7 +10,7 @@
 #include <string>
 
 #include "app/options/field_options.h"
-#include "app/process/limits.h"
+#include "app/process/memory_limit.h"
 #include "core/mesh/weld.h"
 #include "core/surface/node_set.h"
 #include "io/files/file_error.h"

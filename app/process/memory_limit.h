@@ -1,19 +1,10 @@
-// What a run may use: threads, memory, time; and what it did use.
+// Memory: what this process may use, and what it does use.
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
-#include <optional>
 #include <string>
 
 namespace raycone {
-
-// RAYCONE_THREADS where set (UsageError where it is no number of threads), else the CPUs that this process may use:
-// its affinity mask, capped by its cgroup's quota. At least 1.
-[[nodiscard]] int default_threads();
-
-// Largest number of threads that may be asked for.
-inline constexpr int kMaxThreads = 4096;
 
 // The least of: what `ulimit -v` leaves to this process, what `ulimit -d` does, and seven eighths of what the machine
 // and the cgroup leave to so many processes, divided among them. Bytes.
@@ -35,11 +26,5 @@ void cap_memory(std::uint64_t bytes, double untouched = 0.0);
 // Throws LimitError with both numbers if `more` bytes on top of memory_in_use() exceed `limit`. `name`: the file
 // concerned.
 void check_memory(const std::string& name, double more, std::uint64_t limit);
-
-// CPUs by the tightest quota of the cgroup (v1 or v2) of this process and those above it. `root` stands in for "/".
-[[nodiscard]] std::optional<double> cgroup_cpus(const std::filesystem::path& root = "/");
-
-// Bytes that these cgroups leave: their limits less what is in use and not reclaimable file cache.
-[[nodiscard]] std::optional<std::uint64_t> cgroup_memory(const std::filesystem::path& root = "/");
 
 }  // namespace raycone

@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "app/fields/verify.h"
+#include "app/fields/verify_by_definition.h"
 #include "core/machine/threads.h"
 
 namespace raycone {

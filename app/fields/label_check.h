@@ -1,4 +1,4 @@
-// Verification of labels (app/fields/verify.h).
+// Verification of labels (app/fields/verify_by_definition.h).
 #pragma once
 
 #include <cstdint>

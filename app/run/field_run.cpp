@@ -100,8 +100,7 @@ void FieldRun::finish(double band_width) {
     // Lattices and points may have different engines, each within the tolerance.
     const bool may_differ = of_lattice_ && evaluator.exterior_edges() > 0 && field_.tolerance > 0.0;
     const double within = may_differ ? 2 * evaluator.expected_error() : 0.0;
-    return raycone::verify(run_.report.mesh, {original_, &solid_}, evaluator_, field_, band_width, draw_.samples(),
-                           within);
+    return verify(run_.report.mesh, {original_, &solid_}, {evaluator_, field_, band_width, within}, draw_.samples());
   }));
 }
 

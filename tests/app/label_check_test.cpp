@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "app/fields/verify.h"
+#include "app/fields/verify_by_definition.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

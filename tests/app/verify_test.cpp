@@ -39,7 +39,7 @@ std::vector<DrawnSample> drawn(const TriangleMesh& mesh, const std::vector<Vec3>
 
 Verification verified(const TriangleMesh& mesh, const std::vector<Vec3>& points,
                       const FieldOptions& options = all_fields()) {
-  return verify("mesh.obj", {mesh}, FieldEvaluator(mesh, options), options, kInfinity, drawn(mesh, points, options));
+  return verify("mesh.obj", {mesh}, {FieldEvaluator(mesh, options), options, kInfinity}, drawn(mesh, points, options));
 }
 
 std::vector<Vec3> random_points(std::size_t count) {
@@ -68,7 +68,7 @@ std::string error_of(const Verify& verify_something) {
 std::string error_of_run(const TriangleMesh& mesh, const TriangleMesh& other, const std::vector<Vec3>& points) {
   const FieldOptions options = all_fields();
   const FieldEvaluator evaluator(other, options);
-  return error_of([&] { return verify("mesh.obj", {mesh}, evaluator, options, kInfinity, drawn(other, points)); });
+  return error_of([&] { return verify("mesh.obj", {mesh}, {evaluator, options, kInfinity}, drawn(other, points)); });
 }
 
 std::vector<std::uint64_t> numbers_of(const std::vector<DrawnSample>& samples) {
@@ -199,7 +199,7 @@ TEST(Verify, NoticesAValueThatTheEvaluatorDidNotGive) {
   const FieldEvaluator evaluator(mesh, options);
   std::vector<DrawnSample> samples = drawn(mesh, random_points(50));
   const auto error = [&] {
-    return error_of([&] { return verify("mesh.obj", {mesh}, evaluator, options, kInfinity, samples); });
+    return error_of([&] { return verify("mesh.obj", {mesh}, {evaluator, options, kInfinity}, samples); });
   };
   ASSERT_EQ(error(), "");
   samples[17].winding = std::nextafter(*samples[17].winding, 2.0);  // by the last bit
@@ -218,7 +218,7 @@ TEST(Verify, TakesWindingNumbersThatDifferWithinWhatIsAllowed) {
   const auto error_with = [&](double by, double within) {
     std::vector<DrawnSample> samples = right;
     *samples[17].winding += by;
-    return error_of([&] { return verify("mesh.obj", {mesh}, evaluator, options, kInfinity, samples, within); });
+    return error_of([&] { return verify("mesh.obj", {mesh}, {evaluator, options, kInfinity, within}, samples); });
   };
   EXPECT_EQ(error_with(5e-11, 2e-10), "");
   EXPECT_TRUE(error_with(3e-10, 2e-10).ends_with(", expected the same bits"));
@@ -305,7 +305,7 @@ TEST(Verify, ComparesSolidDistancesWithTheSolid) {
   draw.offer(points, samples.numbers());
   const std::vector<DrawnSample> right = draw.samples();
   const auto error_with = [&](const std::vector<DrawnSample>& found, const TriangleMesh& surface) {
-    return error_of([&] { return verify("m", {mesh, &surface}, evaluator, options, kInfinity, found); });
+    return error_of([&] { return verify("m", {mesh, &surface}, {evaluator, options, kInfinity}, found); });
   };
   EXPECT_EQ(error_with(right, solid), "");
   EXPECT_NE(error_with(right, other).find(" has the solid "), std::string::npos);
@@ -351,8 +351,8 @@ TEST(Verify, ComparesDistancesUpToTheBandOnly) {
   evaluator.evaluate(lattice, whole(lattice), samples, nullptr);
   SampleDraw draw(300);
   draw.offer(lattice, whole(lattice), samples.numbers());
-  EXPECT_EQ(verify("m", {mesh}, evaluator, options, 0.5, draw.samples()).samples, 300U);
-  EXPECT_NE(error_of([&] { return verify("m", {mesh}, evaluator, options, 0.75, draw.samples()); }), "");
+  EXPECT_EQ(verify("m", {mesh}, {evaluator, options, 0.5}, draw.samples()).samples, 300U);
+  EXPECT_NE(error_of([&] { return verify("m", {mesh}, {evaluator, options, 0.75}, draw.samples()); }), "");
 }
 
 // Of a far field: winding numbers are rough where nothing but the rule is asked for.
@@ -370,7 +370,7 @@ TEST(Verify, KnowsHowRoughWindingNumbersOfRulesAre) {
   EXPECT_GT(evaluator.winding_number().terms().far, 0U);
   SampleDraw draw(points.size());
   draw.offer(points, samples.numbers());
-  EXPECT_EQ(verify("m", {mesh}, evaluator, options, kInfinity, draw.samples()).samples, points.size());
+  EXPECT_EQ(verify("m", {mesh}, {evaluator, options, kInfinity}, draw.samples()).samples, points.size());
 }
 
 TEST(Verify, WrongValuesAreInternalErrorsInOneLine) {

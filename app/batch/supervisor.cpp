@@ -4,27 +4,22 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cstdint>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <variant>
 
 #include "app/batch/command_message.h"
+#include "app/batch/worker_failure.h"
 #include "app/batch/worker_process.h"
-#include "app/process/exit_code.h"
-#include "app/process/messages.h"
-#include "app/process/own_process.h"
 #include "app/process/signals.h"
 #include "io/files/descriptor.h"
 #include "io/files/file_error.h"
 #include "io/files/file_time.h"
-#include "io/files/readable_bytes.h"
 #include "io/files/temporary_file.h"
 #include "io/mesh/read_mesh.h"
 
@@ -34,14 +29,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kTick{250};
-
-JobResult failed(MeshStatus status, int exit, const std::string& message) {
-  JobResult result;
-  result.row.status = status;
-  result.row.exit = exit;
-  result.row.message = message;
-  return result;
-}
 
 MeshCommand command_for(const SupervisedJob& job, int threads, const SupervisorOptions& options) {
   MeshCommand command = options.for_each;
@@ -188,11 +175,10 @@ class Supervisor {
       const std::string& mesh = jobs_[slot.running->mesh].mesh;
       const bool is_damaged = slot.worker->is_damaged();
       const int wait_status = replace(slot);
-      hash(slot, killed(slot, is_damaged ? damaged(mesh) : crash(mesh, wait_status)));
+      hash(slot, killed(slot, is_damaged ? damaged_answer(mesh) : died(mesh, wait_status, options_.memory_limit)));
     } else if (Clock::now() >= slot.deadline) {
       replace(slot);
-      hash(slot, killed(slot, failed(MeshStatus::kTimeout, static_cast<int>(ExitCode::kLimit),
-                                     timeout_text(jobs_[slot.running->mesh].mesh, options_.timeout))));
+      hash(slot, killed(slot, timed_out(jobs_[slot.running->mesh].mesh, options_.timeout)));
     }
   }
 
@@ -250,40 +236,6 @@ class Supervisor {
     slot.worker.reset();
     if (slot.running) std::ranges::for_each(jobs_[slot.running->mesh].directories, remove_abandoned_files);
     return status;
-  }
-
-  static JobResult damaged(const std::string& mesh) {
-    return failed(MeshStatus::kCrashed, static_cast<int>(ExitCode::kInternal),
-                  mesh + ": the answer of its process is damaged, please report");
-  }
-
-  [[nodiscard]] JobResult crash(const std::string& mesh, int wait_status) const {
-    constexpr int kSignalBase = 128;  // as in shells
-    const auto internal = static_cast<int>(ExitCode::kInternal), limit = static_cast<int>(ExitCode::kLimit);
-    if (wait_status == WorkerProcess::kDoesNotEnd) {
-      return failed(MeshStatus::kCrashed, internal, mesh + ": its process does not end, though it was killed");
-    }
-    const int exit_status = WIFEXITED(wait_status) ? WEXITSTATUS(wait_status) : 0;
-    if (exit_status == limit) {
-      return failed(MeshStatus::kMemory, limit, out_of_memory_text(mesh, options_.memory_limit));
-    }
-    if (exit_status == kNotStarted) {
-      return failed(MeshStatus::kMemory, limit,
-                    mesh + ": its process could not start, for lack of memory (the limit is " +
-                        readable_bytes(static_cast<double>(options_.memory_limit)) + ") or of a library of raycone");
-    }
-    if (exit_status == kNotExecuted) {
-      return failed(MeshStatus::kCrashed, internal,
-                    mesh + ": raycone's own program cannot be executed any more, expected it where it was");
-    }
-    if (!WIFSIGNALED(wait_status)) {
-      return failed(MeshStatus::kCrashed, internal, mesh + ": its process ended unexpectedly, please report");
-    }
-    const int signal = WTERMSIG(wait_status);
-    const std::string hint = signal == SIGKILL ? ", perhaps by the system for lack of memory" : ", please report";
-    return failed(
-        MeshStatus::kCrashed, kSignalBase + signal,
-        mesh + ": its process was killed by signal " + std::to_string(signal) + " (" + strsignal(signal) + ")" + hint);
   }
 
   void finish(Slot& slot, JobResult result) {

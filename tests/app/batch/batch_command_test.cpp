@@ -75,24 +75,44 @@ TEST_F(Batch, MessagesAreOnOneLine) {
   EXPECT_NE(message.find("a?b.obj:2: face index"), std::string::npos) << message;
 }
 
-TEST_F(Batch, PoisonIsContained) {
+TEST_F(Batch, PoisonIsContainedAndTriedAgainWhereItsCauseMayBeGone) {
   put("a.obj");
+  put("bad.obj", "v 0 0 0\n");
   put("big.obj", open_cube(5000));  // 5000^3 values of 4 bytes at voxels of size 1
   put("far.obj", open_cube(1e9));   // 1e27 samples
   const std::string pipe = meshes_ + "/pipe.obj";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // a reader without end
   put("z.obj");
-  const CommandResult result = run_raycone(
-      {"batch", meshes_, pipe, "--out-dir", out_, "--voxel-size", "1", "--timeout", "10", "--memory-limit", "8G"});
+  const auto batch = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"batch", meshes_, pipe, "--out-dir", out_, "--voxel-size", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_raycone(words);
+  };
+  const CommandResult result = batch({"--timeout", "10", "--memory-limit", "8G"});
   EXPECT_EQ(result.status, 5);
-  EXPECT_EQ(
-      statuses(rows()),
-      (Statuses{
-          {"a.obj", "ok"}, {"big.obj", "memory"}, {"far.obj", "memory"}, {"pipe.obj", "timeout"}, {"z.obj", "ok"}}));
+  EXPECT_EQ(statuses(rows()), (Statuses{{"a.obj", "ok"},
+                                        {"bad.obj", "invalid"},
+                                        {"big.obj", "memory"},
+                                        {"far.obj", "memory"},
+                                        {"pipe.obj", "timeout"},
+                                        {"z.obj", "ok"}}));
   for (const char* const mesh : {"big.obj", "far.obj", "pipe.obj"}) EXPECT_EQ(rows().at(mesh).exit, 4) << mesh;
   for (const auto& [mesh, row] : rows()) EXPECT_EQ(row.sha256.size(), mesh == "pipe.obj" ? 0U : 64U) << mesh;
   EXPECT_NE(result.err.find(pipe + ": not finished within 10 seconds"), std::string::npos) << result.err;
   EXPECT_EQ(outputs_in(out_).size(), 2U) << "no debris of the worker that was killed";
+
+  const auto planned = [&batch](const char* timeout, const char* memory, const std::vector<std::string>& more = {}) {
+    std::vector<std::string> words{"--timeout", timeout, "--memory-limit", memory, "--dry-run"};
+    words.insert(words.end(), more.begin(), more.end());
+    return batch(words).out;
+  };
+  EXPECT_EQ(planned("10", "8G"), "");
+  EXPECT_EQ(planned("12", "8G"), pipe + "\ttime limit changed\n");
+  EXPECT_EQ(planned("10", "9G"),
+            meshes_ + "/big.obj\tmemory limit changed\n" + meshes_ + "/far.obj\tmemory limit changed\n");
+  EXPECT_EQ(count_lines(planned("10", "8G", {"--retry-failed"})), 4U);
+  put("bad.obj");
+  EXPECT_EQ(planned("10", "8G"), meshes_ + "/bad.obj\tmesh changed\n");
 }
 
 TEST_F(Batch, GoesOnWithTheWorkersThatThereAre) {
@@ -164,27 +184,6 @@ TEST_F(Batch, NamesOfLabelsReplaceNoInput) {
   EXPECT_EQ(result.status, 1);
   EXPECT_NE(result.err.find("a.json would replace the input"), std::string::npos) << result.err;
   EXPECT_EQ(read_text(list), mesh + '\n');
-}
-
-TEST_F(Batch, FailuresAreTriedAgainWhereTheirCauseMayBeGone) {
-  put("bad.obj", "v 0 0 0\n");
-  put("big.obj", open_cube(5000));
-  const std::string pipe = meshes_ + "/pipe.obj";
-  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
-  const auto batch = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"batch", meshes_, pipe, "--out-dir", out_, "--voxel-size", "1"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_raycone(words).out;
-  };
-  const std::vector<std::string> limits{"--timeout", "9", "--memory-limit", "8G"};
-  batch(limits);
-  EXPECT_EQ(count_lines(batch({"--timeout", "9", "--memory-limit", "8G", "--dry-run"})), 0U);
-  EXPECT_EQ(batch({"--timeout", "12", "--memory-limit", "8G", "--dry-run"}), pipe + "\ttime limit changed\n");
-  EXPECT_EQ(batch({"--timeout", "9", "--memory-limit", "9G", "--dry-run"}),
-            meshes_ + "/big.obj\tmemory limit changed\n");
-  EXPECT_EQ(count_lines(batch({"--timeout", "9", "--memory-limit", "8G", "--dry-run", "--retry-failed"})), 3U);
-  put("bad.obj");
-  EXPECT_EQ(batch({"--timeout", "9", "--memory-limit", "8G", "--dry-run"}), meshes_ + "/bad.obj\tmesh changed\n");
 }
 
 TEST_F(Batch, UnwritableOutputsAreTriedAgain) {

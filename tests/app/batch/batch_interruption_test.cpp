@@ -281,17 +281,6 @@ TEST_F(BatchInterruption, AWorkerThatDiesBetweenMeshesCostsNone) {
   EXPECT_EQ(statuses(rows()), (Statuses{{"a.obj", "ok"}, {"b.obj", "ok"}}));
 }
 
-// Its hash is told by a worker, which has its own time for that.
-TEST_F(BatchInterruption, AMeshTooLargeToBeReadHoldsUpNoOther) {
-  put("a.obj");
-  put("huge.stl", "");
-  constexpr std::uintmax_t kTerabyte = std::uintmax_t{1} << 40;  // of nothing; minutes to hash
-  fs::resize_file(meshes_ + "/huge.stl", kTerabyte);
-  EXPECT_EQ(run({"--timeout", "10", "--quiet"}).status, 5);
-  EXPECT_EQ(statuses(rows()), (Statuses{{"a.obj", "ok"}, {"huge.stl", "memory"}}));
-  EXPECT_EQ(rows().at("huge.stl").sha256, "") << "not known";
-}
-
 TEST_F(BatchInterruption, FourBatchesInOneDirectoryDisturbNoOther) {
   put_many();
   const std::vector<std::string> options{"--resolution", "16", "--threads", "1"};

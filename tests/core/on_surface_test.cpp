@@ -72,8 +72,10 @@ std::vector<TriangleMesh> meshes(Random& random) {
 TEST(OnSurface, IsFlaggedAndHasThePerturbedQuerysValue) {
   Random random(1);
   const std::vector<Vec3> queries = points_of(kHalfNodes);
+  std::vector<Vec3> some;  // the oracle takes milliseconds for each; a step of 4 would leave out all nodes
+  for (std::size_t n = 0; n < queries.size(); n += 5) some.push_back(queries[n]);
   for (const TriangleMesh& mesh : meshes(random)) {
-    const auto failure = test::check(mesh, queries);
+    const auto failure = test::check(mesh, some);
     EXPECT_FALSE(failure) << test::describe(mesh, *failure);
     EXPECT_GT(at_points(mesh, queries).on_surface_count(), 100U);
   }

@@ -169,7 +169,7 @@ def main():
                 for of, mesh, resolution in meshes
                 for limit, threads in CASES
                 for name, arguments in commands(mesh, resolution, points, os.path.join(directory, "out"))]
-        runs += near_limits(teapot, os.path.join(directory, "out"), 200 if LONG else 12)
+        runs += near_limits(teapot, os.path.join(directory, "out"), 200 if LONG else 6)
         count = [len(runs)]
         wrong = [f"{run} {run.message}" for run in runs if not run.is_right()]
         wrong += check_told_at_once(teapot, os.path.join(directory, "out"))

@@ -169,7 +169,9 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   prepare(command, loaded, run, work);
   evaluate_lattice(command, work, observe, run);
   const bool may_be_empty = !should_have_inside(loaded.box, *report.lattice);
-  if (work.fields->found_nothing_inside() && !may_be_empty) run.warn(nothing_inside(command.field.rule));
+  if (work.fields->found_nothing_inside() && !may_be_empty) {
+    run.warn(nothing_inside(command.field.rule, loaded.box, *report.lattice));
+  }
   work.fields->finish(command.field.band * report.lattice->grid.spacing.x);
   timed(report.seconds.write, [&] {
     work.writer->finish({report.tally.degenerate, report.tally.on_surface, report.exterior_edges});

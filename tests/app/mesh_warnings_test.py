@@ -120,6 +120,13 @@ def check_empty(directory):
         expect(named_on(done.stderr, path) == ["reversed"], "reversed.obj", f"{options}: {done.stderr}")
     done = run("points", path, "-", "--field", "inside", input="0.5 0.5 0.5\n")
     expect(named_on(done.stderr, path) == ["reversed"], "reversed.obj", f"points: {done.stderr}")
+    # Where units differ, that is what is told, and not what helps fine lattices.
+    small = os.path.join(directory, "small.obj")
+    with open(small, "w", encoding="utf-8") as file:
+        file.write(obj(box(0.01, 0.046)))
+    for size, hint in ("0.2", "the mesh is 0.036 long, and samples are 0.2 apart; --scale"), ("0.008", "--orient auto"):
+        done = run("lattice", small, "-o", out, "--voxel-size", size, "--field", "inside", "--rule", "threshold=2")
+        expect(hint in done.stderr, "small.obj", f"{size}: {done.stderr}")
 
 
 def triangles_in(paths):

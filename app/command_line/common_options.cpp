@@ -76,7 +76,7 @@ OperandSpec mesh_operand() { return {"MESH", "OBJ, PLY, STL, OFF, glTF, GLB or 3
 
 OperandSpec meshes_operand() {
   OperandSpec operand = mesh_operand();
-  operand.description += "; for labels several, or @LIST of them";
+  operand.description += "; several, or @LIST, with --field label";
   operand.count = OperandCount::kMany;
   return operand;
 }

@@ -73,12 +73,12 @@ OptionGroup field_group() {
        priority_option(),
        rule_option(),
        {"--band", "B",
-        "Cut sdf and solid off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side. all: do not "
-        "cut it off"},
+        "Cut sdf and solid off at B voxels (default: 3); the lattice grows by B + 1 voxels on every side. all: "
+        "nowhere"},
        tolerance_option(),
        {"--diagnostics", "", "Add crossings, degenerate, on_surface and error_bound; slow for open meshes"},
        {"--verify", "N",
-        "Compute N samples again, by definition in 113 bits: 2.7 us per triangle and sample, 9 us with a gradient"},
+        "Compute N samples again, as the direct sum in 113 bits: 2.7 us per triangle and sample, 9 us with a gradient"},
        {"--engine", "auto|scan|embree", "How to find crossings; for tests, as values do not depend on it"},
        {"--simd", "auto|sse4|avx2|avx512", "Instructions to use; for tests, as values do not depend on them"}}};
 }
@@ -89,7 +89,7 @@ OptionSpec rule_option() {
 
 OptionSpec parts_option() {
   return {"--parts", "file|group|component",
-          "What a part is, for label: a MESH (default; not in a batch), a group of one, or a connected component"};
+          "What a part is, for label: a MESH (default; not in a batch), a group in a mesh, or a connected component"};
 }
 
 OptionSpec priority_option() {

@@ -54,7 +54,8 @@ void make_room(std::variant<LatticeRequest, GridReference>& lattice) {
 OptionGroup lattice_group_with_room() {
   OptionGroup group = lattice_group();
   const auto padding = std::ranges::find(group.options, "--padding", &OptionSpec::names);
-  padding->description = "Widen the box by P or Q % of its longest side, or by N voxels, on every side (at least 1v)";
+  padding->description =
+      "Widen the box by P or Q % of its longest side, or by N voxels, on every side; never by less than 1v";
   return group;
 }
 

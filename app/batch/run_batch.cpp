@@ -1,6 +1,7 @@
 // Straight lines: meshes found, what is up to date left out, the others handed to workers, results kept.
 #include "app/batch/run_batch.h"
 
+#include <poll.h>
 #include <signal.h>
 #include <unistd.h>
 
@@ -124,6 +125,13 @@ void make_directory(const std::string& path) {
   if (error) throw OutputError(path + ": cannot create the directory: " + error.message());
 }
 
+// Where standard error can be written to at once: who interrupts does not wait, and may have closed it.
+void print_how_far(const BatchOutcome& outcome) {
+  pollfd standard_error{STDERR_FILENO, POLLOUT, 0};
+  if (poll(&standard_error, 1, 0) != 1 || standard_error.revents != POLLOUT) return;
+  print_message("interrupted: " + summary_line(outcome) + (outcome.not_done > 0 ? "; run it again to go on" : ""));
+}
+
 }  // namespace
 
 ExitCode run_batch(const BatchCommand& command) {
@@ -142,7 +150,10 @@ ExitCode run_batch(const BatchCommand& command) {
   }
   make_directory(command.directory);
   BatchRun run(command, options, {all.directories, std::move(plan), std::move(gone)});
-  if (const int signal = run.run(limits)) raise(signal);
+  if (const int signal = run.run(limits)) {
+    if (!command.run.quiet) print_how_far(run.outcome());
+    raise(signal);
+  }
   if (!command.run.quiet) print_message(summary_line(run.outcome()));
   return run.outcome().any_failed() && !command.exit_zero ? ExitCode::kBatch : ExitCode::kDone;
 }

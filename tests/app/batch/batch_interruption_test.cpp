@@ -178,6 +178,8 @@ TEST_F(BatchInterruption, BySignalCleansUpAndDiesOfIt) {
     command.send_signal(signal);
     const CommandResult result = command.wait();
     EXPECT_EQ(result.signal, signal);
+    EXPECT_NE(result.err.find("raycone: interrupted: 1 mesh done, 0 failed"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("; 2 not done; run it again to go on\n"), std::string::npos) << result.err;
     expect_all_to_end(workers);
     EXPECT_EQ(temporaries(), 0U);
     const auto kept = rows();

@@ -61,8 +61,8 @@ TriangleMesh MeshRun::prepare(TriangleMesh as_read) {
   return std::move(input.mesh);
 }
 
-void MeshRun::print(const std::string& mesh, const std::vector<Warning>& warnings) {
-  const auto write = [&] { raycone::print_warnings(warnings, options_, mesh); };
+void MeshRun::print(const std::string& file, const std::vector<Warning>& warnings, const RunOptions& options) {
+  const auto write = [&] { raycone::print_warnings(warnings, options, file); };
   if (progress_) {
     progress_->interrupt(write);
   } else {
@@ -72,7 +72,7 @@ void MeshRun::print(const std::string& mesh, const std::vector<Warning>& warning
 
 void MeshRun::print_warnings() {
   const auto first = report.warnings.begin() + static_cast<std::ptrdiff_t>(printed_);
-  print(report.mesh, {first, report.warnings.end()});
+  print(report.mesh, {first, report.warnings.end()}, options_);
   printed_ = report.warnings.size();
 }
 
@@ -82,10 +82,18 @@ void MeshRun::warn(const Warning& warning) {
 }
 
 void MeshRun::warn_about(const std::string& mesh, const std::vector<Warning>& warnings) {
-  print(mesh, warnings);
+  print(mesh, warnings, options_);
   for (const Warning& warning : warnings) {
     report.warnings.push_back({warning.name, (report.meshes.size() > 1 ? mesh + ": " : "") + warning.text});
   }
+  printed_ = report.warnings.size();
+}
+
+void MeshRun::warn_of_points(const std::string& points, const std::vector<Warning>& warnings) {
+  RunOptions options = options_;
+  options.strict = false;
+  print(points, warnings, options);
+  for (const Warning& warning : warnings) report.warnings.push_back({warning.name, points + ": " + warning.text});
   printed_ = report.warnings.size();
 }
 

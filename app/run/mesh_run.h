@@ -63,6 +63,8 @@ class MeshRun {
   void warn(const Warning& warning);
   // Likewise, about a mesh that need not be the only one.
   void warn_about(const std::string& mesh, const std::vector<Warning>& warnings);
+  // Likewise, about a file of points: with --strict no error, which is for meshes.
+  void warn_of_points(const std::string& points, const std::vector<Warning>& warnings);
 
   // From here on progress is shown, where it is wanted. `total` samples, where known. Returns the count of those done,
   // to be increased by the work.
@@ -81,7 +83,7 @@ class MeshRun {
   OutputFile output;
 
  private:
-  void print(const std::string& mesh, const std::vector<Warning>& warnings);
+  void print(const std::string& file, const std::vector<Warning>& warnings, const RunOptions& options);
 
   const MeshOptions& mesh_;
   const OutputFiles& written_;

@@ -152,7 +152,7 @@ void evaluate_points(const PointsCommand& command, PointWork& work, MeshRun& run
     }
   };
   while (read_more()) {
-    if (run.report.samples == 0) run.warn_about(command.points, reader.warnings());
+    if (run.report.samples == 0) run.warn_of_points(command.points, reader.warnings());
     fields.evaluate(points, done);
     if (work.labels) timed(seconds.evaluate, [&] { work.labels->evaluate(points, fields.labels()); });
     const SurfacePlaces places = reader.places();

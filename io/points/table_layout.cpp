@@ -1,6 +1,7 @@
 #include "io/points/table_layout.h"
 
 #include <algorithm>
+#include <span>
 
 #include "io/files/ascii.h"
 #include "io/files/counted.h"
@@ -102,10 +103,14 @@ std::string mismatch(std::size_t names, std::size_t fields) {
 std::string quoted(std::string_view name) { return "'" + excerpt(name) + "'"; }
 
 // Of three columns people mean these; of more, the first may be a number of the row, or a time.
-std::string doubt_about(const std::vector<std::string_view>& names) {
-  if (names.size() <= 3) return "";
-  return "the first three of " + counted(names.size(), "column") + ", " + quoted(names[0]) + ", " + quoted(names[1]) +
-         " and " + quoted(names[2]) + ", are taken for x, y and z, as no names tell; --columns takes others";
+std::string doubt_about(const std::vector<std::string_view>& names, const std::vector<std::string_view>& fields,
+                        char delimiter) {
+  const std::size_t found = without_empty_ends(fields);
+  if (found <= 3) return "";
+  const bool are_names = names.size() >= 3 && fit(names, fields, delimiter);  // and no title
+  return "the first three of " + counted(found, "column") +
+         (are_names ? ", " + quoted(names[0]) + ", " + quoted(names[1]) + " and " + quoted(names[2]) + "," : "") +
+         " are taken for x, y and z, as no names tell; --columns takes others";
 }
 
 // Where the delimiter is this one.
@@ -128,7 +133,7 @@ TableLayout layout_with(char delimiter, const std::optional<std::string>& header
   const bool has_index = names.size() > 1 && names.front().empty();  // as tables of R and pandas have
   return {.delimiter = delimiter,
           .fault = has_index ? "the first column has no name, expected columns x, y and z, or --columns" : "",
-          .doubt = doubt_about(names)};
+          .doubt = doubt_about(names, fields, delimiter)};
 }
 
 }  // namespace
@@ -142,12 +147,15 @@ std::vector<std::string_view> fields_of(std::string_view line, char delimiter) {
 
 namespace {
 
-// Words that may stand beside x, y or z in a name.
-bool says_little(std::string_view word) {
-  constexpr std::array<std::string_view, 19> kWords{
-      "p",      "point",  "points", "pos", "position", "coord", "coordinate", "coords", "location", "vertex",
-      "center", "centre", "um",     "mm",  "cm",       "m",     "km",         "in",     "ft"};
-  return std::ranges::any_of(kWords, [&](std::string_view known) { return is_word(word, known); });
+// Words that may stand beside x, y or z in a name, and such as do so where no column has the former.
+constexpr std::array<std::string_view, 14> kPointWords{
+    "point", "points", "pos", "position", "coord", "coordinate", "coords", "um", "mm", "cm", "m", "km", "in", "ft"};
+constexpr std::array<std::string_view, 5> kOtherWords{"p", "location", "vertex", "center", "centre"};
+
+using Words = std::span<const std::string_view>;
+
+bool is_one_of(Words words, std::string_view word) {
+  return std::ranges::any_of(words, [&](std::string_view known) { return is_word(word, known); });
 }
 
 constexpr std::size_t kNoAxis = 3;
@@ -166,13 +174,13 @@ std::size_t axis_with_unit(std::string_view name) {
 }
 
 // Of "POINT_X", "pos.y", "z_mm".
-std::size_t axis_with_words(std::string_view name) {
+std::size_t axis_with_words(std::string_view name, Words words) {
   std::size_t axis = kNoAxis;
   while (!name.empty()) {
     const std::size_t end = std::min(name.find_first_of("_. "), name.size());
     const std::string_view word = name.substr(0, end);
     name.remove_prefix(std::min(end + 1, name.size()));
-    if (word.empty() || says_little(word)) continue;
+    if (word.empty() || is_one_of(words, word)) continue;
     if (axis != kNoAxis) return kNoAxis;
     axis = axis_of_letter(word);
     if (axis == kNoAxis) return kNoAxis;
@@ -214,7 +222,10 @@ std::optional<Columns> named_columns(const std::vector<std::string_view>& names)
     if (found == 3) return columns;
   }
   AxisColumns columns = columns_by(axis_with_unit, names);
-  if (columns.count == std::array{0, 0, 0}) columns = columns_by(axis_with_words, names);
+  for (const Words words : {Words(kPointWords), Words(kOtherWords)}) {
+    if (columns.count != std::array{0, 0, 0}) break;
+    columns = columns_by([&](std::string_view name) { return axis_with_words(name, words); }, names);
+  }
   return columns.count == std::array{1, 1, 1} ? std::optional(columns.last) : std::nullopt;
 }
 

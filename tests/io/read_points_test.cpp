@@ -125,6 +125,10 @@ TEST_F(ReadPoints, NamesOfColumnsMayHaveWordsThatSayLittle) {
         "n,X (m),Y (m),Z (m)", "id,P.x,P.y,P.z", "n,center_x,center_y,center_z", "n,//X,Y,Z"}) {
     EXPECT_EQ(read(std::string(header) + "\n7,1,2,3\n8,-4,.5,6e-3\n"), kTwo) << header;
   }
+  for (const char* const header :
+       {"id,center_x,center_y,center_z,pos_x,pos_y,pos_z", "id,P.x,P.y,P.z,point_x,point_y,point_z"}) {
+    EXPECT_EQ(read(std::string(header) + "\n7,8,9,0,1,2,3\n8,9,0,1,-4,.5,6e-3\n"), kTwo) << header;
+  }
   EXPECT_EQ(read("n,X [m],Y [m],Z [m],pos_x\n7,1,2,3,0\n8,-4,.5,6e-3,0\n"), kTwo);
   EXPECT_EQ(read("n,x (m),y (m),z (m),x_ft,y_ft,z_ft\n7,1,2,3,0,0,0\n8,-4,.5,6e-3,0,0,0\n"), kTwo);
   // Of velocities, normals and two points nobody knows.
@@ -228,8 +232,20 @@ TEST_F(ReadPoints, HeadersThatLeaveOpenWhichColumnsAreMeantAreWarnedAbout) {
   EXPECT_TRUE(warnings("id tx ty tz", {.columns = {{2, 3, 4}}, .raw = {}}).empty());
   EXPECT_TRUE(warnings("id x y z").empty());
   EXPECT_TRUE(warnings("//X Y Z I").empty());
-  EXPECT_TRUE(warnings("tx ty tz").empty()) << "no others are named";
   EXPECT_TRUE(warnings("# no header").empty());
+  EXPECT_EQ(warnings("a title").at(0).text,
+            "the first three of 4 columns are taken for x, y and z, as no names tell; --columns takes others");
+}
+
+TEST_F(ReadPoints, HeadersOfThreeColumnsLeaveNothingOpen) {
+  for (const char* const header : {"tx ty tz", "Scan of part 7", "a b c d e"}) {
+    const std::unique_ptr<PointReader> reader = open(std::string(header) + "\n1 2 3\n-4 .5 6e-3\n");
+    EXPECT_EQ(read_all(*reader), kTwo);
+    EXPECT_TRUE(reader->warnings().empty()) << header;
+  }
+  const std::unique_ptr<PointReader> reader = open("a,b,c,,\n1,2,3,,\n-4,.5,6e-3,,\n");
+  EXPECT_EQ(read_all(*reader), kTwo);
+  EXPECT_TRUE(reader->warnings().empty()) << "columns without names and values";
 }
 
 // A first line that is not read as numbers may be a point all the same: it must not be lost.

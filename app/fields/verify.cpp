@@ -32,12 +32,12 @@ void check_repeated(const std::string& name, const DrawnSample& sample, const Dr
   }
 }
 
+// What sums round is no fault of theirs. Who asks is warned where it is more than expected.
 double accuracy_of(const WindingNumberEvaluator& evaluator, const TriangleMesh& mesh, double tolerance) {
-  // No mesh has more exterior edges than sides of faces, whatever the evaluator says.
-  constexpr double u = 0x1p-53;
-  const double most = 3 * u * static_cast<double>(mesh.triangles.size());
   const double asked = tolerance >= kLeastTolerance ? tolerance : 1e-10;
-  return std::clamp(evaluator.expected_error(), asked, std::max(asked, most));
+  // No mesh has more exterior edges than sides of faces, whatever the evaluator says.
+  const double most = asked + 3 * kAgreeingRounding * static_cast<double>(mesh.triangles.size());
+  return std::clamp(evaluator.error_of_agreeing_roundings(), asked, most);
 }
 
 FieldOptions with_diagnostics(FieldOptions options) {

@@ -16,7 +16,7 @@ namespace raycone {
 
 // A run as it was asked for.
 struct VerifiedRun {
-  const FieldEvaluator& evaluator;
+  const FieldEvaluator& evaluator;  // that of the meshes and options
   const FieldOptions& options;
   double band_width;    // where distances are cut off, world units
   double within = 0.0;  // by how much winding numbers may differ from those at points, as those of lattices do within

@@ -97,7 +97,9 @@ double gradient_tolerance(const DirectGradient& gradient) {
          std::numeric_limits<double>::denorm_min();
 }
 
-void raise(std::optional<double>& largest, double difference) { largest = std::max(largest.value_or(0.0), difference); }
+void note_largest(std::optional<double>& largest, double difference) {
+  largest = std::max(largest.value_or(0.0), difference);
+}
 
 // The samples of one run, one after the other.
 class DefinitionCheck {
@@ -176,7 +178,7 @@ class DefinitionCheck {
     for (std::size_t axis = 0; axis < expected.size(); ++axis) {
       const NamedNumber component{kGradientNames[axis], (*sample.gradient)[static_cast<int>(axis)]};
       const Quad finite = std::clamp(expected[axis], Quad(-kMost), Quad(kMost));
-      raise(found_.largest_gradient_difference, compare(sample, component, finite, tolerance));
+      note_largest(found_.largest_gradient_difference, compare(sample, component, finite, tolerance));
     }
   }
 
@@ -185,7 +187,7 @@ class DefinitionCheck {
     const Quad cut_off = std::min(truth, Quad(expectations_.band_width));
     const Quad expected = std::signbit(distance.number) ? -cut_off : cut_off;
     const double tolerance = distance_tolerance(mesh, sample.point, truth);
-    raise(found_.largest_distance_difference, compare(sample, distance, expected, tolerance));
+    note_largest(found_.largest_distance_difference, compare(sample, distance, expected, tolerance));
   }
 
   const std::string& name_;

@@ -96,12 +96,22 @@ void FieldRun::finish(double band_width) {
   const double bound = field_.diagnostics ? largest_bound_ : evaluator_.expected_error();
   run_.report.largest_error_bound = std::max(run_.report.largest_error_bound, bound);
   if (field_.verify == 0) return;
-  run_.report.add_verification(timed(run_.report.seconds.verify, [&] {
+  const Verification found = timed(run_.report.seconds.verify, [&] {
     // Lattices and points may have different engines, each within the tolerance.
     const bool may_differ = of_lattice_ && evaluator.exterior_edges() > 0 && field_.tolerance > 0.0;
     const double within = may_differ ? 2 * evaluator.expected_error() : 0.0;
     return verify(run_.report.mesh, {original_, &solid_}, {evaluator_, field_, band_width, within}, draw_.samples());
-  }));
+  });
+  run_.report.add_verification(found);
+  warn_of_difference(found.largest_difference);
+}
+
+// Of what sums round beyond what they are expected to.
+void FieldRun::warn_of_difference(double difference) {
+  if (evaluator_.winding_number().exterior_edges() == 0 || difference <= evaluator_.winding_number().expected_error())
+    return;
+  run_.report.largest_error_bound = std::max(run_.report.largest_error_bound, difference);
+  if (const auto warning = tolerance_not_kept(field_.tolerance, difference)) run_.warn(*warning);
 }
 
 void check_points_memory(const MeshOptions& options, std::uint64_t triangles, const FieldOptions& field,

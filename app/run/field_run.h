@@ -55,6 +55,7 @@ class FieldRun {
   void finish(double band_width);
 
  private:
+  void warn_of_difference(double difference);
   [[nodiscard]] bool tells_inside() const { return field_.has(Field::kInside) || field_.has_distance(); }
   void look_for_inside();
   void look_for_largest_bound();

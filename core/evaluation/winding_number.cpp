@@ -52,6 +52,11 @@ double tolerance_for_sides(const Rule& rule) { return thresholds_to_settle(rule)
 
 double WindingNumberEvaluator::doubt() const { return implementation_->scaled().doubt(); }
 
+double WindingNumberEvaluator::error_of_agreeing_roundings() const {
+  const ScaledMesh& mesh = implementation_->scaled();
+  return mesh.choice().tolerance() + kAgreeingRounding * mesh.boundary().total_multiplicity();
+}
+
 double WindingNumberEvaluator::expected_error() const {
   constexpr double u = 0x1p-53;
   const ScaledMesh& mesh = implementation_->scaled();

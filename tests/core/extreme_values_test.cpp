@@ -159,6 +159,32 @@ TEST(ExtremeValues, OfManyCopiesAreAsRightAsExpected) {
   }
 }
 
+// Needles with one long edge in common: beside it, the roundings of all their edges have one sign.
+TEST(ExtremeValues, OfNeedlesWhoseRoundingsAgreeAreOffByMoreThanExpected) {
+  Random random(5);
+  const Vec3 a{0.3712345, -0.9134567, -0.8765432}, b{-0.4123457, 0.8345671, 0.9456783};
+  TriangleMesh needles{{a, b}, {}};
+  for (std::uint32_t n = 2; n < 1002; ++n) {
+    needles.vertices.push_back(b + 1e-5 * test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}}));
+    needles.triangles.push_back({0, 1, n});
+  }
+  std::vector<Vec3> queries;
+  for (int n = 0; n < 200; ++n) {
+    const double along = test::uniform(random, 0, 1), beside = std::exp2(-test::uniform(random, 3, 11));
+    queries.push_back(along * a + (1 - along) * b + beside * test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}}));
+  }
+  const WindingNumberEvaluator evaluator(needles, {.accuracy = {.tolerance = 0.0}});
+  std::vector<double> values(queries.size());
+  evaluator.evaluate(queries, values);
+  double largest = 0.0;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    const auto error = static_cast<double>(values[i] - perturbed_direct_sum(needles, queries[i]).value);
+    largest = std::max(largest, std::abs(error));
+  }
+  EXPECT_GT(largest, evaluator.expected_error()) << "else there is nothing to be said";
+  EXPECT_LE(largest, evaluator.error_of_agreeing_roundings());
+}
+
 // --- Byte equality ---
 
 std::vector<std::uint64_t> bits(const std::vector<double>& values) {

@@ -30,6 +30,7 @@ struct BatchWork {
   GoneMeshes gone;  // rows to be removed
 };
 
+// Is run once; outcome() is known after that. For one thread.
 class BatchRun {
  public:
   // `command` and `options` must outlive this.

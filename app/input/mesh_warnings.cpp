@@ -64,16 +64,17 @@ std::vector<Warning> warnings_about(const OrientationCounts& counts) {
                                             " cut, because no orientation makes all faces agree"});
   }
   if (const std::uint64_t edges = counts.wall_edges) {
-    warnings.push_back({"walls", counted_as(edges, "edge", "edges") +
-                                     " where faces stored in both orientations meet a surface that is closed without "
-                                     "them; --orient auto keeps one of each two, which bends the winding number "
-                                     "nearby; --orient keep is right for walls between cells, for others this is"});
+    warnings.push_back(
+        {"walls", counted_as(edges, "edge", "edges") +
+                      " where faces stored in both orientations meet a surface that is closed without "
+                      "them; --orient auto keeps one of each two, which bends the winding number "
+                      "nearby; --orient keep is right for walls between cells, --orient auto for all else"});
   }
   return warnings;
 }
 
 Warning weld_collapsed(std::uint64_t faces, double distance) {
-  return {"weld-collapsed", counted_as(faces, "face", "faces") + " lost their area to --weld " +
+  return {"weld-collapsed", counted_as(faces, "face loses its area", "faces lose their area") + " to --weld " +
                                 with_digits(distance, 6) + ", which made corners one; a smaller distance keeps " +
                                 (faces == 1 ? "it" : "them")};
 }
@@ -112,7 +113,8 @@ Warning nothing_inside(const Rule& rule, const Box& box, const PlacedLattice& la
   const double length = longest_side(box), spacing = lattice.grid.least_spacing();
   if (length < kFew * spacing) {
     return {"empty", nothing + ": the mesh is " + with_digits(length, 3) + " long, and samples are " +
-                         with_digits(spacing, 3) + " apart; --scale helps where units differ, or a finer lattice"};
+                         with_digits(spacing, 3) + " apart; --scale helps where units differ, a finer lattice, or " +
+                         "--orient auto where faces are reversed"};
   }
   return {"empty", nothing + "; --orient auto helps where faces are reversed, a finer lattice where the mesh is thin"};
 }

@@ -18,7 +18,7 @@ std::string listed_names(const std::vector<std::size_t>& empty, const MeshParts&
   return text + (empty.size() > kMost ? ", ..." : "");
 }
 
-// Of one part of several, each of which is a component or more.
+// Of a part: one of negative volume counts as a component, if none of its own is reversed.
 std::uint64_t reversed_components(const MeshDefects& defects) {
   return defects.reversed_components == 0 && defects.negative_volume ? 1 : defects.reversed_components;
 }

@@ -51,9 +51,10 @@ class FanSteps {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> steps_;  // of faces at corners
 };
 
-// The first fan stays, and each other one goes a distance farther than those before it, away from them, against the
-// perturbation. Of two that may leave each other, the one that is ahead at the other ends of their edges is ahead, or
-// the one whose faces are. Nothing where one may not leave another that is before it. Thread-safe.
+// Against the perturbation: of the order that is found the first fan stays, and each other one goes a distance farther
+// than those before it, away from them. Of two that may leave each other, the one that is ahead at the other ends of
+// their edges is ahead, or the one whose faces are. Nothing where one may not leave another that is before it.
+// Thread-safe.
 [[nodiscard]] std::optional<FanParting> parting_against_perturbation(const std::vector<FanCone>& fans, double distance,
                                                                      const FanSteps& steps);
 

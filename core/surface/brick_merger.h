@@ -30,8 +30,8 @@ class BrickMerger {
 
   void merge_all(const SurfaceBricks& bricks);
 
-  // But for those that are `known`. Sets `changed` of each of the others to the vertices with faces in other bricks,
-  // too, that have other faces in this one now.
+  // But for those that are `known`. Adds to `changed` of each of the others the vertices with faces in other bricks,
+  // too, that have other faces in this one now. Both have one element a brick.
   void merge_unknown(const SurfaceBricks& bricks, const std::vector<std::uint8_t>& known,
                      std::vector<std::vector<std::uint32_t>>& changed);
 

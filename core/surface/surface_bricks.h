@@ -34,7 +34,7 @@ struct SurfaceBricks {
 [[nodiscard]] SurfaceBricks bricks_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                                       const Lattice& lattice, double shift);
 
-// All triangles in one brick, which has no place. `vertices`: how many there are.
+// All triangles in one brick, which has no place: place_of_owner() is not to be asked. `vertices`: how many there are.
 [[nodiscard]] SurfaceBricks one_brick_of(std::size_t vertices, const std::vector<Triangle>& triangles);
 
 }  // namespace raycone

@@ -99,7 +99,8 @@ void FieldRun::finish(double band_width) {
   const Verification found = timed(run_.report.seconds.verify, [&] {
     // Lattices and points may have different engines, each within the tolerance.
     const bool may_differ = of_lattice_ && evaluator.exterior_edges() > 0 && field_.tolerance > 0.0;
-    const double within = may_differ ? 2 * evaluator.expected_error() : 0.0;
+    const double most = std::max(evaluator.expected_error(), evaluator.error_of_agreeing_roundings());
+    const double within = may_differ ? 2 * most : 0.0;
     return verify(run_.report.mesh, {original_, &solid_}, {evaluator_, field_, band_width, within}, draw_.samples());
   });
   run_.report.add_verification(found);

@@ -996,6 +996,29 @@ TEST(PatchMerger, KeepsTheRimOfAFin) {
   for (const std::uint32_t corner : {0U, 2U, 3U, 4U, 5U}) EXPECT_EQ(merged.into()[corner], corner);
 }
 
+// The ridge of a blade of five degrees: what is a bit behind it is near to both planes.
+TEST(PatchMerger, KeepsTheRidgeOfABlade) {
+  const DefaultFloatingPoint guard;
+  constexpr double kBehind = 1.5e-8, kHalf = 0.0437;  // the tangent of half the angle
+  const Vec3 lower{1, -1, -kHalf}, upper{1, -1, kHalf};
+  SurfacePatch patch;
+  patch.vertices = {{0, -kBehind, 0}, {1, 0, 0}, {2, -kBehind, 0}, lower, upper};
+  patch.triangles = {{0, 1, 3}, {1, 2, 3}, {1, 0, 4}, {2, 1, 4}, {0, 3, 4}, {3, 2, 4}};
+  patch.sources = {0, 0, 1, 1, 2, 3};
+  patch.roles.assign(patch.vertices.size(), VertexRole::kFree);
+  patch.settled.assign(patch.vertices.size(), 0);
+  // The planes meet in the line of the middle vertex.
+  const TriangleMesh input{{{0, 0, 0}, {2, 0, 0}, lower, upper, patch.vertices[0], patch.vertices[2]},
+                           {{0, 1, 2}, {1, 0, 3}, {4, 2, 3}, {2, 5, 3}}};
+  PatchMerger merged(patch, input, {1e-9, 1e-8});
+  merged.merge();
+  EXPECT_EQ(merged.into()[1], 1U);
+  patch.vertices[0].y = patch.vertices[2].y = 0.0;  // on one straight line
+  PatchMerger straight(patch, input, {1e-9, 1e-8});
+  straight.merge();
+  EXPECT_NE(straight.into()[1], 1U);
+}
+
 // The border of faces that close a hole stays where it is, also in the plane of what is beside it.
 TEST(Surface, KeepsTheBorderOfAHoleWhereFacesAreMerged) {
   // A box whose top has a hole that is no rectangle: what closes it is nearly in the plane of the rest of the top.

@@ -109,8 +109,8 @@ void FieldRun::finish(double band_width) {
 
 // Of what sums round beyond what they are expected to.
 void FieldRun::warn_of_difference(double difference) {
-  if (evaluator_.winding_number().exterior_edges() == 0 || difference <= evaluator_.winding_number().expected_error())
-    return;
+  const WindingNumberEvaluator& evaluator = evaluator_.winding_number();
+  if (evaluator.exterior_edges() == 0 || difference <= evaluator.expected_error()) return;
   run_.report.largest_error_bound = std::max(run_.report.largest_error_bound, difference);
   if (const auto warning = tolerance_not_kept(field_.tolerance, difference)) run_.warn(*warning);
 }

@@ -655,6 +655,35 @@ TEST(Surface, KeepsConcaveCorners) {
   }
 }
 
+// Two pyramids that touch with their tips.
+TriangleMesh hourglass() {
+  return {{{0, 0, 0}, {1, 0, 1}, {0, 1, 1}, {-1, 0, 1}, {0, -1, 1}, {1, 0, -1}, {0, 1, -1}, {-1, 0, -1}, {0, -1, -1}},
+          {{0, 2, 1},
+           {0, 3, 2},
+           {0, 4, 3},
+           {0, 1, 4},
+           {1, 2, 3},
+           {1, 3, 4},
+           {0, 5, 6},
+           {0, 6, 7},
+           {0, 7, 8},
+           {0, 8, 5},
+           {5, 7, 6},
+           {5, 8, 7}}};
+}
+
+// Of the eight planes at the tip, those of two faces that meet in an edge leave a whole line to choose from.
+TEST(Surface, KeepsTipsThatTouch) {
+  for (int n = 0; n < 24; ++n) {
+    const TriangleMesh mesh = turned(hourglass(), {1.0, 0.3 * (n % 8) - 1.0, 0.7 - 0.1 * n}, 0.4 + 0.9 * n);
+    const auto [surface, lattice] = surface_of(mesh, 24, {.rule = {}, .merge_planes = false});
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Vec3& p : surface.mesh.vertices) nearest = std::min(nearest, norm(p - mesh.vertices[0]));
+    // The margin moves a vertex by less than two margins along each axis.
+    EXPECT_LT(nearest, 4e-9 * lattice.spacing.x) << n;
+  }
+}
+
 // As floats are, or six or seven digits of text: triangles of one plane are no more in one plane then.
 TEST(Surface, KeepsEdgesAndFacesOfPartsWithRoundedCoordinates) {
   const auto as_float = [](double x) { return static_cast<double>(static_cast<float>(x)); };

@@ -40,6 +40,9 @@ inline Box box_of(const Vec3& a, const Vec3& b, const Vec3& c) { return hull(box
 inline double middle(const Box& box, int axis) { return box.lower[axis] / 2 + box.upper[axis] / 2; }
 inline Vec3 middle(const Box& box) { return {middle(box, 0), middle(box, 1), middle(box, 2)}; }
 
+// Of half the coordinates, whose differences do not overflow.
+inline Box half_of(const Box& box) { return {0.5 * box.lower, 0.5 * box.upper}; }
+
 inline double longest_side(const Box& box) {
   const Vec3 size = box.upper - box.lower;
   return std::max({size.x, size.y, size.z});

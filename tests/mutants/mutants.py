@@ -463,7 +463,7 @@ MUTANTS = [
     Mutant("duplicates_are_one", "two triangles of the same corners overlap", [
         ("core/intersections/triangle_pair.cpp", "return !is_flat(a);", "return false;")]),
     Mutant("boxes_must_overlap", "boxes that touch meet", [
-        ("core/intersections/self_intersections.cpp", "meeting(const HalfBox& box) const {\n    const __m128i sides = in_units(box);",
+        ("core/intersections/box_node.h", "meeting(const HalfBox& box) const {\n    const __m128i sides = in_units(box);",
          "meeting(const HalfBox& box) const {\n    const __m128i sides = _mm_sub_epi16(in_units(box), _mm_setr_epi16(0, 0, 1, 1, 0, 1, 0, 0));")]),
     Mutant("first_of_any_thread", "the first pair is that of the tree's order", [
         ("core/intersections/self_intersections.cpp", "if (found_first.place < first.place) first = found_first;",

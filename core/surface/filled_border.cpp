@@ -9,7 +9,7 @@
 #include "core/mesh/disjoint_sets.h"
 #include "core/surface/closed_by_caps.h"
 #include "core/surface/fill_check.h"
-#include "core/surface/hole_fill.h"
+#include "core/surface/fit_to_threshold.h"
 #include "core/surface/mesh_border.h"
 #include "core/surface/surface_measures.h"
 

@@ -688,7 +688,7 @@ MUTANTS = [
     Mutant("edges_moved_at_one_end", "of two parts the same one moves along all of an edge", [
         ("core/arrangement/fan_cone.cpp", "sum += dot(across, way)", "sum -= 0.0 * dot(across, way)")]),
     Mutant("caps_as_they_are", "faces of caps are divided until they are along the threshold", [
-        ("core/surface/hole_fill.cpp", "if (bent.empty()) return true;", "if (bent.empty() || true) return true;")]),
+        ("core/surface/fit_to_threshold.cpp", "if (bent.empty()) return true;", "if (bent.empty() || true) return true;")]),
     Mutant("beside_the_threshold", "new vertices are where w is the threshold", [
         ("core/surface/line_roots.cpp", "if (!bracket.at_jump) return bracket.root;", "if (!bracket.at_jump) return 1.001 * bracket.root;")]),
     Mutant("jumps_of_half_a_turn", "rules that fold w jump by less", [
@@ -698,11 +698,11 @@ MUTANTS = [
     Mutant("fills_on_faces", "no vertex of a fill is on a face of the mesh", [
         ("core/surface/line_roots.cpp", "std::min(behind / length,", "std::min(0.0 * behind / length,")]),
     Mutant("nodes_of_holes_unseen", "nodes next to what closes a hole are on their sides", [
-        ("core/surface/hole_fill.cpp", "fits = misplaced.empty();", "fits = true;")]),
+        ("core/surface/fit_to_threshold.cpp", "fits = misplaced.empty();", "fits = true;")]),
     Mutant("other_evaluators_in_scale", "scaled meshes have evaluators with the same accuracies", [
         ("core/surface/surface_in_scale.cpp", "evaluator.asked_accuracy()", "(void(evaluator), Accuracy{})")]),
     Mutant("islands_inside_out", "the part that a node gets has the node on its side", [
-        ("core/surface/hole_fill.cpp", "fill_.add_octahedron(tips, nodes[n].is_inside);", "fill_.add_octahedron(tips, !nodes[n].is_inside);")]),
+        ("core/surface/fit_to_threshold.cpp", "fill_.add_octahedron(tips, nodes[n].is_inside);", "fill_.add_octahedron(tips, !nodes[n].is_inside);")]),
     Mutant("sheets_are_thick", "what ends within half a voxel behind a sheet is too thin", [
         ("core/surface/fill_check.cpp", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.5;", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.001;")]),
     Mutant("any_filling", "what closes holes must be near to the threshold", [

@@ -1,4 +1,4 @@
-#include "core/surface/hole_fill.h"
+#include "core/surface/fit_to_threshold.h"
 
 #include <algorithm>
 #include <array>
@@ -64,24 +64,24 @@ Vec3 barycentric_of_nearest(const std::array<Vec3, 3>& corners, const Vec3& p) {
 
 class ThresholdFit {
  public:
-  ThresholdFit(SurfaceMesh& surface, const RuleAlong& along, const NodeSet& inside, const FillLimits& limits)
+  ThresholdFit(SurfaceMesh& surface, const RuleAlong& along, const NodeSet& inside, const FitOptions& options)
       : fill_(surface),
         along_(along),
         inside_(inside),
         voxel_(inside.lattice().least_spacing()),
-        limits_(limits),
+        options_(options),
         is_settled_(fill_.size(), false) {
-    limits_.most_faces = std::min(limits.most_faces, most_of_area());
+    options_.most_faces = std::min(options.most_faces, most_of_area());
   }
 
   bool fit() {
     constexpr int kMostRounds = 8, kRoundsOfDivision = 5;  // a face that is folded may never have a node on its side
     bool fits = false;
-    for (int round = 0; round < kMostRounds && !fits && limits_.most_faces > 0; ++round) {
+    for (int round = 0; round < kMostRounds && !fits && options_.most_faces > 0; ++round) {
       if (!divide_bent()) break;
       const NodeSet misplaced = misplaced_nodes(fill_.mesh(), inside_, &kNoEdges);
       fits = misplaced.empty();
-      if (fits || misplaced.size() > limits_.most_faces) break;
+      if (fits || misplaced.size() > options_.most_faces) break;
       if (round < kRoundsOfDivision ? !divide_at(misplaced) : !add_islands(positions_of(misplaced))) break;
     }
     fill_.put_back();
@@ -99,7 +99,7 @@ class ThresholdFit {
     constexpr std::size_t kPerFace = 4, kAtLeast = 64;
     double area = 0.0;
     for (std::uint32_t face = 0; face < fill_.size(); ++face) area += norm(fill_.normal(face)) / (2 * voxel_ * voxel_);
-    if (!(area <= kLargest * static_cast<double>(limits_.most_faces))) return 0;
+    if (!(area <= kLargest * static_cast<double>(options_.most_faces))) return 0;
     return kAtLeast + kPerFace * fill_.size() + static_cast<std::size_t>(kPerSquareVoxel * area);
   }
 
@@ -114,7 +114,7 @@ class ThresholdFit {
       std::vector<Line> lines;
       for (const Part& part : bent) lines.push_back(across(part));
       divide(bent, nearest_roots(lines, kFlat * voxel_, kBehind * voxel_, along_));
-      if (fill_.size() > limits_.most_faces) return false;
+      if (fill_.size() > options_.most_faces) return false;
     }
     return false;
   }
@@ -128,7 +128,7 @@ class ThresholdFit {
     for (std::size_t n = 0; n < parts.size(); ++n) {
       const auto [one, other] = fill_.faces_of(parts[n]);
       if (places[n]) {
-        fill_.divide(parts[n], limits_.single_precision ? rounded_to_float(*places[n]) : *places[n]);
+        fill_.divide(parts[n], options_.single_precision ? rounded_to_float(*places[n]) : *places[n]);
         is_settled_[one] = is_settled_[other] = false;
       } else {
         is_settled_[parts[n].face] = true;
@@ -235,7 +235,7 @@ class ThresholdFit {
     const std::vector<Misplaced> misplaced = positions_of(nodes);
     const std::vector<std::uint32_t> nearest = nearest_faces(misplaced);
     const std::vector<std::array<std::uint32_t, 3>> sides = inner_sides();
-    const double lift = voxel_ * surface_margin(inside_.lattice(), limits_.single_precision);
+    const double lift = voxel_ * surface_margin(inside_.lattice(), options_.single_precision);
     std::vector<bool> is_taken(fill_.size(), false);
     std::vector<Part> parts;
     std::vector<Line> lines;
@@ -280,7 +280,7 @@ class ThresholdFit {
   // be above the threshold, or below it within the solid. Where that reaches a node, it gets a small part of its own:
   // as far along each axis as the threshold, or a bit less. Returns whether there are any.
   bool add_islands(const std::vector<Misplaced>& nodes) {
-    const double least = voxel_ * surface_margin(inside_.lattice(), limits_.single_precision);
+    const double least = voxel_ * surface_margin(inside_.lattice(), options_.single_precision);
     std::vector<Line> lines;
     for (const Misplaced& node : nodes) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -299,7 +299,7 @@ class ThresholdFit {
         const std::optional<Vec3>& root = roots[6 * n + tip];
         const double reach = kIsland * (root ? norm(*root - line.point) : voxel_);
         tips[tip] = line.point + std::max(reach, least) * line.direction;
-        if (limits_.single_precision) tips[tip] = rounded_to_float(tips[tip]);
+        if (options_.single_precision) tips[tip] = rounded_to_float(tips[tip]);
       }
       fill_.add_octahedron(tips, nodes[n].is_inside);
     }
@@ -351,14 +351,14 @@ class ThresholdFit {
   const RuleAlong& along_;
   const NodeSet& inside_;
   double voxel_;
-  FillLimits limits_;
+  FitOptions options_;
   std::vector<bool> is_settled_;  // of each face, whether it is along the threshold, or not to be divided
 };
 
 }  // namespace
 
-bool fit_to_threshold(SurfaceMesh& surface, const RuleAlong& along, const NodeSet& inside, const FillLimits& limits) {
-  return ThresholdFit(surface, along, inside, limits).fit();
+bool fit_to_threshold(SurfaceMesh& surface, const RuleAlong& along, const NodeSet& inside, const FitOptions& options) {
+  return ThresholdFit(surface, along, inside, options).fit();
 }
 
 }  // namespace raycone

@@ -9,7 +9,7 @@
 
 namespace raycone {
 
-struct FillLimits {
+struct FitOptions {
   std::size_t most_faces = 0;     // without source
   bool single_precision = false;  // new vertices are floats
 };
@@ -24,6 +24,6 @@ struct FillLimits {
 // threads. Preconditions: as of closed_surface(), and `along` is of the rule and the mesh that the surface is of. Needs
 // DefaultFloatingPoint.
 [[nodiscard]] bool fit_to_threshold(SurfaceMesh& surface, const RuleAlong& along, const NodeSet& inside,
-                                    const FillLimits& limits);
+                                    const FitOptions& options);
 
 }  // namespace raycone

@@ -1,4 +1,4 @@
-#include "core/surface/hole_fill.h"
+#include "core/surface/fit_to_threshold.h"
 #include "core/mesh/mesh_statistics.h"
 
 #include <gtest/gtest.h>
@@ -62,18 +62,18 @@ struct Filled {
   bool fits = false;
 };
 
-Filled filled(const TriangleMesh& mesh, double voxel, const FillLimits& limits, const Rule& rule = {}) {
+Filled filled(const TriangleMesh& mesh, double voxel, const FitOptions& options, const Rule& rule = {}) {
   const DefaultFloatingPoint guard;
   const WindingNumberEvaluator evaluator(mesh);
   SurfaceMesh surface{closed_by_caps(mesh, exterior_edges(mesh)), {}};
   surface.sources.resize(surface.mesh.triangles.size(), kHole);
   for (std::size_t n = 0; n < mesh.triangles.size(); ++n) surface.sources[n] = static_cast<std::int32_t>(n);
   NodeSet inside = nodes_inside(evaluator, rule, lattice_of(voxel));
-  const bool fits = fit_to_threshold(surface, RuleAlong(evaluator, rule), inside, limits);
+  const bool fits = fit_to_threshold(surface, RuleAlong(evaluator, rule), inside, options);
   return {std::move(surface), std::move(inside), fits};
 }
 
-TEST(HoleFill, CapsCloseTheMesh) {
+TEST(ClosedByCaps, ClosesTheMesh) {
   for (const TriangleMesh& mesh : {test::open_box(), bitten_sphere(), test::notched_fan(), test::fan(5, 3)}) {
     const TriangleMesh closed = closed_by_caps(mesh, exterior_edges(mesh));
     EXPECT_TRUE(exterior_edges(closed).empty());
@@ -83,7 +83,7 @@ TEST(HoleFill, CapsCloseTheMesh) {
 }
 
 // Two bowls, one in the other, without the rim between: a strip closes that, of triangles as narrow as it is.
-TEST(HoleFill, StripsCloseRims) {
+TEST(ClosedByCaps, ClosesRimsByStrips) {
   const auto below = [](const Vec3& p) { return p.z < 0.3; };
   const TriangleMesh outer = part_of_sphere(12, below);
   const TriangleMesh inner = test::moved(outer, {0.9, 0.9, 0.9}, {0, 0, 0.02});
@@ -98,7 +98,7 @@ TEST(HoleFill, StripsCloseRims) {
 }
 
 // New vertices are where a direct sum over all triangles in 113 bits is the threshold.
-TEST(HoleFill, FollowsTheThreshold) {
+TEST(FitToThreshold, FollowsTheThreshold) {
   for (const double threshold : {0.5, 0.4}) {
     const TriangleMesh mesh = bent_bowl();
     const Rule rule{RuleKind::kThreshold, threshold};
@@ -120,7 +120,7 @@ TEST(HoleFill, FollowsTheThreshold) {
 }
 
 // Of caps alone they are not, nor are nodes on their sides: the test above can fail.
-TEST(HoleFill, NeedsFacesEnough) {
+TEST(FitToThreshold, NeedsFacesEnough) {
   const TriangleMesh mesh = bent_bowl();
   EXPECT_FALSE(filled(mesh, 0.1, {.most_faces = 40}).fits);
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice_of(0.1));
@@ -128,7 +128,7 @@ TEST(HoleFill, NeedsFacesEnough) {
 }
 
 // Where the winding number is 1 or more at nodes inside, as it is 0 or less at the others.
-TEST(HoleFill, PutsNodesOnTheirSides) {
+TEST(FitToThreshold, PutsNodesOnTheirSides) {
   for (const double voxel : {0.1, 0.06}) {
     const Filled result = filled(bitten_sphere(), voxel, {.most_faces = 40000});
     EXPECT_TRUE(result.fits);
@@ -138,13 +138,13 @@ TEST(HoleFill, PutsNodesOnTheirSides) {
   }
 }
 
-TEST(HoleFill, LeavesWhatIsFlat) {
+TEST(FitToThreshold, LeavesWhatIsFlat) {
   const Filled result = filled(test::open_box(), 0.1, {.most_faces = 10000});
   EXPECT_TRUE(result.fits);
   EXPECT_EQ(result.surface.sources.size(), 12U);
 }
 
-TEST(HoleFill, RoundsNewVerticesToSinglePrecision) {
+TEST(FitToThreshold, RoundsNewVerticesToSinglePrecision) {
   TriangleMesh mesh = bent_bowl();
   round_to_float(mesh.vertices);
   const Filled result = filled(mesh, 0.1, {.most_faces = 10000, .single_precision = true});
@@ -155,7 +155,7 @@ TEST(HoleFill, RoundsNewVerticesToSinglePrecision) {
 }
 
 // Across the ends of a short pipe w is less than 1/2: what is inside is a ring.
-TEST(HoleFill, IsNotAlongTheThresholdWhereThatIsElsewhere) {
+TEST(FitToThreshold, IsNotAlongTheThresholdWhereThatIsElsewhere) {
   const TriangleMesh pipe = part_of_sphere(12, [](const Vec3& p) { return std::abs(p.z) < 0.4; });
   const Filled result = filled(pipe, 0.1, {.most_faces = 10000});
   const DefaultFloatingPoint guard;

@@ -15,7 +15,7 @@
 #include "core/data/sample_box.h"
 #include "core/evaluation/lattice_tile.h"
 #include "core/evaluation/scaled_mesh.h"
-#include "core/evaluation/side_of.h"
+#include "core/evaluation/side_setter.h"
 #include "core/evaluation/sums_round.h"
 
 namespace raycone {

@@ -10,7 +10,7 @@
 #include "core/evaluation/row_crossings.h"
 #include "core/evaluation/rows.h"
 #include "core/evaluation/rule_blocks.h"
-#include "core/evaluation/side_of.h"
+#include "core/evaluation/side_setter.h"
 #include "core/machine/threads.h"
 
 namespace raycone {

@@ -390,7 +390,7 @@ MUTANTS = [
     Mutant("settled_without_whole_turns", "values tell the whole turns of the direct sum that settles them", [
         ("core/evaluation/settler.cpp", " + std::nearbyint(value - direct[i])", "")]),
     Mutant("sides_are_not_settled", "a value within the doubt of a threshold is settled", [
-        ("core/evaluation/side_of.h", "return raycone::may_be_across(w, threshold, doubt_);",
+        ("core/evaluation/side_setter.h", "return raycone::may_be_across(w, threshold, doubt_);",
          "return raycone::may_be_across(w, threshold, -2 - doubt_);")]),
     Mutant("edges_change_less", "an edge bounds the gradient by L / (4 pi d^2)", [
         ("core/boundary/change_kernel.cpp", "const Lanes of_length = hn::Div(hn::Load(d, &node.length[i]), square);",

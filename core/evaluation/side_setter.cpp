@@ -1,4 +1,4 @@
-#include "core/evaluation/side_of.h"
+#include "core/evaluation/side_setter.h"
 
 #include "core/evaluation/settler.h"
 

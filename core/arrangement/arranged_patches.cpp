@@ -21,7 +21,7 @@ std::int64_t forward(std::span<const FaceEdge> edge, const Arrangement& arrangem
 }
 
 // As good as doubles are: only where a patch is looked at depends on it.
-double area_of(const Triangle& triangle, const Arrangement& arrangement) {
+double doubled_area(const Triangle& triangle, const Arrangement& arrangement) {
   const Vec3 a = arrangement.rounded(triangle[0]);
   return safe_norm(cross(arrangement.rounded(triangle[1]) - a, arrangement.rounded(triangle[2]) - a));
 }
@@ -32,7 +32,7 @@ ArrangedPatches with_largest(std::vector<std::uint32_t> of_triangle, const Arran
   std::vector<double> largest_areas;
   for (std::uint32_t triangle = 0; triangle < patches.of_triangle.size(); ++triangle) {
     const std::uint32_t patch = patches.of_triangle[triangle];
-    const double area = area_of(arrangement.triangles()[triangle], arrangement);
+    const double area = doubled_area(arrangement.triangles()[triangle], arrangement);
     if (patch == patches.largest.size()) {
       patches.largest.push_back(triangle);
       largest_areas.push_back(area);

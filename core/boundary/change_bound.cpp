@@ -60,18 +60,12 @@ void cut(const Vec3& a, const Vec3& b, const Vec3& c, double size, const Visit& 
   cut(middle, b, c, size, visit, cuts + 1);
 }
 
-double area_of(const TriangleMesh& mesh) {
-  double area = 0.0;
-  for (const Triangle& t : mesh.triangles) area += area_of_triangle(mesh, t);
-  return area;
-}
-
 }  // namespace
 
 ChangeBound::ChangeBound(const Caps& caps, SimdLevel level) : kernel_(change_kernel(level)) {
   if (caps.mesh.triangles.empty()) return;  // edges there and back, which add nothing
   const Box box = bounding_box(caps.mesh);
-  piece_ = std::max(longest_side(box) / kPiecesAlong, std::sqrt(area_of(caps.mesh) / kOfCaps));
+  piece_ = std::max(longest_side(box) / kPiecesAlong, std::sqrt(total_area(caps.mesh) / kOfCaps));
   place_error_ = kPlaceError * largest_coordinate(box);
   add_edges(caps.wide_loops);
   add_narrow(caps);

@@ -106,11 +106,9 @@ struct Chunk {
     z[n] = v.z;
   }
   [[nodiscard]] Vec3 vertex(std::size_t n) const { return {x[n], y[n], z[n]}; }
+  // Of the edge from vertex n.
+  [[nodiscard]] EdgeSide side(std::size_t n, const Vec3& q) const { return edge_side(vertex(n), vertex(n + 1), q); }
 };
-
-EdgeSide side_of(const Chunk& chunk, std::size_t n, const Vec3& q) {
-  return edge_side(chunk.vertex(n), chunk.vertex(n + 1), q);
-}
 
 // One value per vertex of a chunk and lane.
 using LaneColumn = std::array<double, (kEdgesPerChunk + 1) * 8>;
@@ -143,7 +141,7 @@ class EdgesOfOneRay {
       without_factor_[n] = chunk.orientation[n] == 0.0;
       if (without_factor_[n] || !std::isnan(im_[n])) continue;
       without_factor_[n] = is_level_beside(n);
-      if (!without_factor_[n]) sides_[n] = side_of(chunk, n, {samples.x[0], samples.y[0], samples.z[0]});
+      if (!without_factor_[n]) sides_[n] = chunk.side(n, {samples.x[0], samples.y[0], samples.z[0]});
     }
   }
 
@@ -160,7 +158,7 @@ class EdgesOfOneRay {
   }
   // That of edge n, exact.
   [[nodiscard]] EdgeSide side(std::size_t n, const Vec3& q) const {
-    return std::isnan(im_[n]) ? sides_[n] : side_of(chunk_, n, q);
+    return std::isnan(im_[n]) ? sides_[n] : chunk_.side(n, q);
   }
 
  private:
@@ -204,7 +202,7 @@ class EdgesOfRays {
     return project(projections.vertex(n), projections.vertex(n + 1), hn::Set(d, chunk_.dy[n]), hn::Set(d, chunk_.dz[n]),
                    hn::Set(d, chunk_.orientation[n]));
   }
-  [[nodiscard]] EdgeSide side(std::size_t n, const Vec3& q) const { return side_of(chunk_, n, q); }
+  [[nodiscard]] EdgeSide side(std::size_t n, const Vec3& q) const { return chunk_.side(n, q); }
 
  private:
   const Chunk& chunk_;
@@ -239,7 +237,7 @@ class EdgesOfRows {
     const Lanes im = hn::Set(d, im_[place]);
     return {hn::Set(d, re_[place]), im, hn::CopySignToAbs(hn::Set(d, 1.0), im)};
   }
-  [[nodiscard]] EdgeSide side(std::size_t n, const Vec3& q) const { return side_of(chunk_, n, q); }
+  [[nodiscard]] EdgeSide side(std::size_t n, const Vec3& q) const { return chunk_.side(n, q); }
 
  private:
   // Of rows from `row` on.

@@ -15,4 +15,10 @@ double area_of_triangle(const TriangleMesh& mesh, const Triangle& triangle) {
   return safe_norm(cross(mesh.vertices[triangle[1]] - a, mesh.vertices[triangle[2]] - a)) / 2.0;
 }
 
+double total_area(const TriangleMesh& mesh) {
+  double area = 0.0;
+  for (const Triangle& t : mesh.triangles) area += area_of_triangle(mesh, t);
+  return area;
+}
+
 }  // namespace raycone

@@ -36,5 +36,6 @@ struct TriangleMesh {
 
 // Of one triangle, world units squared; where squares over- or underflow, too.
 [[nodiscard]] double area_of_triangle(const TriangleMesh& mesh, const Triangle& triangle);
+[[nodiscard]] double total_area(const TriangleMesh& mesh);  // of all, likewise
 
 }  // namespace raycone

@@ -26,7 +26,7 @@ Box box_of(const SolidTriangle& t) { return box_of(t.a, t.b, t.c); }
 
 // No less than the area, but for some roundings of it. A product of differences says nothing of needles; where that is
 // all there is, it is rounded up.
-double area_of(const SolidTriangle& t) {
+double area_bound(const SolidTriangle& t) {
   const double exact = safe_norm(t.normal) / 2;
   if (!std::isnan(exact)) return exact;
   const Vec3 ab = t.b - t.a, ac = t.c - t.a;
@@ -181,7 +181,7 @@ void SourceTree::measure(SourceNode& node) const {
   Box box = box_of(triangles_[node.begin]);
   for (std::uint32_t i = node.begin; i < node.end; ++i) {
     extend(box, box_of(triangles_[i]));
-    node.area += area_of(triangles_[i]);
+    node.area += area_bound(triangles_[i]);
   }
   node.area *= 1 + kSumRounding;
   node.centre = middle(box);

@@ -18,8 +18,8 @@ constexpr double kFlat = 0.999999999999995;    // cos 1e-7
 
 constexpr double kTouch = 1e-9;  // of barycentric coordinates, where a crease only touches a tetrahedron
 
-// The side of a triangle that is this edge.
-unsigned side_of(const TriangleMesh& mesh, const FaceEdge& edge) {
+// Which side of its triangle an edge is, from 0 to 2.
+unsigned side_number(const TriangleMesh& mesh, const FaceEdge& edge) {
   const Triangle& t = mesh.triangles[edge.face];
   const std::uint32_t from = edge.is_forward ? edge.low : edge.high, to = edge.is_forward ? edge.high : edge.low;
   return t[0] == from && t[1] == to ? 0 : t[1] == from && t[2] == to ? 1 : 2;
@@ -90,7 +90,7 @@ CellCreases::CellCreases(const TriangleMesh& mesh, const TriangleNormals& normal
     const double cosine = are_two ? cosine_at(normals, first, last) : 0.0;
     const unsigned bits = (cosine > kFlat ? 0U : 1U) | (cosine > kFine ? 0U : 1U << kCreaseBit) |
                           (cosine > kSharpCosine ? 0U : 1U << kSharpBit);
-    const unsigned side = side_of(mesh, first);
+    const unsigned side = side_number(mesh, first);
     sides_[first.face] = static_cast<std::uint16_t>(sides_[first.face] | bits << side);
     beyond_[first.face][side] = are_two ? last.face : first.face;
     if (bits == 0) parts.join(first.face, last.face);

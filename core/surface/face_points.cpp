@@ -86,7 +86,7 @@ bool disagree(const FaceEdges& face, double tolerance, double margin) {
 }
 
 // Where the planes at the two points meet in the face's plane.
-std::optional<Vec3> meeting_point(const FaceEdges& face, double margin) {
+std::optional<Vec3> meeting_in_face(const FaceEdges& face, double margin) {
   const EdgePoint &p = *face.points[0], &q = *face.points[1];
   if (p.source == kHole || q.source == kHole) return std::nullopt;
   const Vec3 first = face.corners[1] - face.corners[0], second = face.corners[2] - face.corners[0];
@@ -142,7 +142,7 @@ std::optional<Vec3> meeting_on_crease(const FaceEdges& face, CreasesHere& crease
                                       double margin, CreaseKinds kinds = CreaseKinds::kNotFine) {
   // The margin and rounding move points off the mesh by less than this.
   const double near = 4.0 * (tolerance + unit);
-  const std::optional<Vec3> meeting = meeting_point(face, margin);
+  const std::optional<Vec3> meeting = meeting_in_face(face, margin);
   return meeting && creases.has_hit_near(face.corners, *meeting, near, kinds) ? meeting : std::nullopt;
 }
 

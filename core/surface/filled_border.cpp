@@ -11,7 +11,6 @@
 #include "core/surface/fill_check.h"
 #include "core/surface/fit_to_threshold.h"
 #include "core/surface/mesh_border.h"
-#include "core/surface/surface_measures.h"
 
 namespace raycone {
 namespace {

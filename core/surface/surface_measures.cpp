@@ -183,12 +183,6 @@ class MissedSamples {
 
 }  // namespace
 
-double total_area(const TriangleMesh& mesh) {
-  double area = 0.0;
-  for (const Triangle& t : mesh.triangles) area += area_of_triangle(mesh, t);
-  return area;
-}
-
 double hole_area(const SurfaceMesh& surface) {
   double area = 0.0;
   for (std::size_t i = 0; i < surface.mesh.triangles.size(); ++i) {

@@ -32,8 +32,6 @@ struct ThinParts {
   std::uint64_t lost = 0;  // components of the mesh that are dropped as a whole, with such area
 };
 
-[[nodiscard]] double total_area(const TriangleMesh& mesh);
-
 // Of the faces without a source.
 [[nodiscard]] double hole_area(const SurfaceMesh& surface);
 

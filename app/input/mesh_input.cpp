@@ -90,7 +90,8 @@ TriangleMesh welded_mesh(TriangleMesh as_read, const MeshOptions& options, std::
 }
 
 MeshToEvaluate oriented_mesh(TriangleMesh welded, const MeshOptions& options) {
-  OrientedMesh oriented = orient(std::move(welded), options.orient, options.weld.mode != WeldMode::kNone);
+  const EqualVertices equal = options.weld.mode == WeldMode::kNone ? EqualVertices::kMayBe : EqualVertices::kNone;
+  OrientedMesh oriented = orient(std::move(welded), options.orient, equal);
   MeshToEvaluate result{std::move(oriented.mesh), oriented.counts, {}, {}, std::move(oriented.places)};
   VertexLinks links(result.mesh.vertices.size());
   result.edges = exterior_edges(result.mesh, &links);

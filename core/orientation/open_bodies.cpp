@@ -53,7 +53,7 @@ std::vector<int> winding_around(const std::vector<OutermostPatch>& patches, cons
   for (const OutermostPatch& patch : patches) {
     for (const SurfaceSample& sample : patch.samples) points.push_back({sample.at, 0});
   }
-  const std::vector<double> w = SurfaceField(faces, vertices, false).winding_numbers(points);
+  const std::vector<double> w = SurfaceField(faces, vertices).winding_numbers(points);
   auto it = w.begin();
   for (std::size_t n = 0; n < patches.size(); ++n) {
     const auto end = it + static_cast<std::ptrdiff_t>(patches[n].samples.size());

@@ -104,7 +104,7 @@ class OpenSurfaceTurner::Search {
   // What a surface does at samples.
   [[nodiscard]] std::vector<SignProblem::Effect> effects(std::size_t surface,
                                                          std::span<const std::uint32_t> samples) const {
-    const SurfaceField field(*surfaces_[surface].faces, vertices_, surfaces_[surface].first.sign < 0);
+    const SurfaceField field(*surfaces_[surface].faces, vertices_, surfaces_[surface].first.sign);
     std::vector<FieldPoint> points;
     for (const std::uint32_t k : samples) points.push_back({samples_[k].at, is_own(surface, k) ? samples_[k].side : 0});
     const std::vector<double> w = field.winding_numbers(points);
@@ -167,7 +167,7 @@ class OpenSurfaceTurner::Search {
     constexpr double kLeastReach = 0x1p-40;  // of the size of a mesh in scale
     std::vector<SurfaceDipole> dipoles(surfaces_.size());
     parallel_for_each(surfaces_.size(), 64, [&](std::size_t i) {
-      dipoles[i] = dipole_of(*surfaces_[i].faces, vertices_, surfaces_[i].first.sign < 0);
+      dipoles[i] = dipole_of(*surfaces_[i].faces, vertices_, surfaces_[i].first.sign);
       if (i < kLargestSurfaces) dipoles[i].area = {};
     });
     // Samples may lie on the centres of many surfaces: to them all is far at last.

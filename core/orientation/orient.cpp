@@ -210,16 +210,16 @@ std::uint64_t wall_edges(const UniqueFaces& unique, const FaceNeighbours& neighb
 }
 
 // For each vertex the first one at its position.
-std::vector<std::uint32_t> positions(const TriangleMesh& mesh, bool is_welded) {
-  if (!is_welded) return first_equal_vertices(mesh.vertices);
+std::vector<std::uint32_t> positions(const TriangleMesh& mesh, EqualVertices equal) {
+  if (equal == EqualVertices::kMayBe) return first_equal_vertices(mesh.vertices);
   std::vector<std::uint32_t> positions(mesh.vertices.size());
   std::iota(positions.begin(), positions.end(), 0U);
   return positions;
 }
 
-OrientedMesh turned_to_agree(TriangleMesh mesh, bool is_welded) {
+OrientedMesh turned_to_agree(TriangleMesh mesh, EqualVertices equal) {
   const DefaultFloatingPoint guard;
-  const std::vector<std::uint32_t> position = positions(mesh, is_welded);
+  const std::vector<std::uint32_t> position = positions(mesh, equal);
   UniqueFaces unique = unique_faces(mesh, position);
   FaceNeighbours neighbours(unique.corners, mesh.vertices.size());
   const std::vector<Vec3> vertices = scaled_vertices(mesh);
@@ -245,10 +245,10 @@ OrientedMesh turned_to_agree(TriangleMesh mesh, bool is_welded) {
 
 }  // namespace
 
-OrientedMesh orient(TriangleMesh mesh, Orient how, bool is_welded) {
+OrientedMesh orient(TriangleMesh mesh, Orient how, EqualVertices equal) {
   check_counts(mesh);
   if (how == Orient::kKeep || mesh.triangles.empty()) return {std::move(mesh), {}};
-  return how == Orient::kFlip ? flipped(std::move(mesh)) : turned_to_agree(std::move(mesh), is_welded);
+  return how == Orient::kFlip ? flipped(std::move(mesh)) : turned_to_agree(std::move(mesh), equal);
 }
 
 }  // namespace raycone

@@ -14,6 +14,9 @@ enum class Orient {
   kAuto,  // consistent, and outward
 };
 
+// Whether vertices may be at the same position. Where none are, nobody looks for them.
+enum class EqualVertices { kMayBe, kNone };
+
 struct OrientationCounts {
   std::uint64_t flipped_faces = 0;       // of those that are left, how many were stored the other way round
   std::uint64_t dropped_duplicates = 0;  // of the same three positions as a face that is left
@@ -52,7 +55,7 @@ struct OrientedMesh {
 // docs/method.md, "Orientation", has the rules. The result does not depend on the order of faces and vertices, nor on
 // the number of threads; it uses those that ThreadLimit allows. Preconditions: the vertices that triangles use are
 // finite, and no coordinate is -0 (core/mesh/weld.h). Throws std::bad_alloc, and std::length_error for more than
-// kMaxTriangles. `is_welded`: no two vertices are at the same position, which saves looking for them.
-[[nodiscard]] OrientedMesh orient(TriangleMesh mesh, Orient how, bool is_welded = false);
+// kMaxTriangles.
+[[nodiscard]] OrientedMesh orient(TriangleMesh mesh, Orient how, EqualVertices equal = EqualVertices::kMayBe);
 
 }  // namespace raycone

@@ -38,9 +38,9 @@ bool has_met_corners(const Triangle& t, const std::vector<Vec3>& vertices) {
 }
 
 // A mesh of these faces. Of a small part of a mesh, without the other vertices.
-TriangleMesh mesh_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed) {
+TriangleMesh mesh_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, int sign) {
   TriangleMesh mesh{{}, faces};
-  if (reversed) {
+  if (sign < 0) {
     for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   }
   if (faces.size() > vertices.size() / 16) {
@@ -70,14 +70,13 @@ SurfaceDipole dipole_about(const Box& box) {
 
 }  // namespace
 
-SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed) {
+SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, int sign) {
   std::array<__int128, 3> area{};
   for (const Triangle& t : faces) {
     const CanonicalFace face = canonical_face(t, vertices);
     const Vec3 twice = cross(face.corners[1] - face.corners[0], face.corners[2] - face.corners[0]);
     for (int axis = 0; axis < 3; ++axis) {
-      area[static_cast<std::size_t>(axis)] +=
-          (reversed ? -face.sign : face.sign) * in_units(0.5 * twice[axis], kAreaUnits);
+      area[static_cast<std::size_t>(axis)] += sign * face.sign * in_units(0.5 * twice[axis], kAreaUnits);
     }
   }
   SurfaceDipole dipole = dipole_about(bounding_box(faces, vertices));
@@ -115,18 +114,18 @@ SurfaceDipole SurfaceField::Large::dipole() const {
   return dipole;
 }
 
-SurfaceField::SurfaceField(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed) {
+SurfaceField::SurfaceField(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, int sign) {
   if (faces.size() >= kLargeSurface) {
-    large_ = std::make_unique<const Large>(mesh_of(faces, vertices, reversed));
+    large_ = std::make_unique<const Large>(mesh_of(faces, vertices, sign));
     dipole_ = large_->dipole();
     return;
   }
-  dipole_ = dipole_of(faces, vertices, reversed);
+  dipole_ = dipole_of(faces, vertices, sign);
   for (const Triangle& t : faces) {
     if (has_met_corners(t, vertices)) continue;  // no area, and an orientation that depends on the order of its corners
     const CanonicalFace face = canonical_face(t, vertices);
     faces_.push_back(face.corners);
-    if ((face.sign < 0) != reversed) std::swap(faces_.back()[1], faces_.back()[2]);
+    if (sign * face.sign < 0) std::swap(faces_.back()[1], faces_.back()[2]);
   }
 }
 

@@ -30,10 +30,9 @@ struct SurfaceDipole {
   }
 };
 
-// About the middle of the surface's box; `reversed`: of the faces the other way round. Coordinates in [0, 1]. Does not
-// depend on the order of faces, whose areas are added up as integers.
-[[nodiscard]] SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices,
-                                      bool reversed);
+// About the middle of the surface's box; `sign`: -1 of the faces the other way round, else 1. Coordinates in [0, 1].
+// Does not depend on the order of faces, whose areas are added up as integers.
+[[nodiscard]] SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, int sign);
 
 // A point, and where it lies on the surface itself: 0 not there, else as SurfaceSample::side.
 struct FieldPoint {
@@ -45,7 +44,7 @@ struct FieldPoint {
 class SurfaceField {
  public:
   // As for dipole_of().
-  SurfaceField(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, bool reversed);
+  SurfaceField(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, int sign = 1);
 
   // Beyond this many radii from its centre a surface is a dipole: it is then off by some percent of itself.
   static constexpr double kFar = 3.0;

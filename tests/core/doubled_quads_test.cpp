@@ -147,7 +147,7 @@ TEST(DoubledQuads, AreNoWalls) {
     for (std::size_t n = 0; n < 4; ++n) copy[n] = 8 + kSides[side][(n + 1) % 4];
     add_fan(copy, mesh);
   }
-  const OrientedMesh result = orient(mesh, Orient::kAuto, /*is_welded=*/false);
+  const OrientedMesh result = orient(mesh, Orient::kAuto);
   EXPECT_EQ(result.counts.dropped_duplicates, 0U);
   EXPECT_EQ(winding_number(result.mesh, {0.9, 0.4, 0.6}), 1.0);
   EXPECT_EQ(winding_number(result.mesh, {1.1, 0.4, 0.6}), 1.0);

@@ -505,10 +505,10 @@ TEST(SurfaceField, DependsOnNoOrderWhereVerticesHaveMet) {
   }
   std::vector<FieldPoint> points;
   for (int i = 0; i < 200; ++i) points.push_back({test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}}), 0});
-  const std::vector<double> expected = SurfaceField(mesh.triangles, mesh.vertices, false).winding_numbers(points);
+  const std::vector<double> expected = SurfaceField(mesh.triangles, mesh.vertices).winding_numbers(points);
   for (int i = 0; i < 20; ++i) {
     const TriangleMesh other = test::shuffled(mesh, random);
-    ASSERT_EQ(SurfaceField(other.triangles, other.vertices, false).winding_numbers(points), expected) << i;
+    ASSERT_EQ(SurfaceField(other.triangles, other.vertices).winding_numbers(points), expected) << i;
   }
 }
 
@@ -540,7 +540,7 @@ TEST(SurfaceField, IsTheMeanOfBothSidesOnTheSurface) {
   ASSERT_EQ(samples.size(), 20U);
   std::vector<FieldPoint> points;
   for (const SurfaceSample& sample : samples) points.push_back({sample.at, sample.side});
-  const std::vector<double> w = SurfaceField(bowl.triangles, bowl.vertices, false).winding_numbers(points);
+  const std::vector<double> w = SurfaceField(bowl.triangles, bowl.vertices).winding_numbers(points);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     TriangleMesh others = bowl;
     std::erase_if(others.triangles,

@@ -35,9 +35,10 @@ constexpr double kLargestBlock = 0x1p18;  // ... this where nothing is near.
 // many meshes have flat boundaries, and the sides of triangles would be ties.
 constexpr double kMargin = 1.0 + 0x1.3p-9;
 
-double making_cost(double far, bool parent) {
-  return far > 0.0 || parent ? far * static_cast<double>(HarmonicFit::kNodes) + kFitting : 0.0;
-}
+double field_cost(double far) { return far * static_cast<double>(HarmonicFit::kNodes) + kFitting; }
+
+// Of a block that has no field unless something is far: its parent has none.
+double cost_of_own_field(double far) { return far > 0.0 ? field_cost(far) : 0.0; }
 
 // Cut so that sub-blocks are whole, but for those at the end of the lattice.
 std::size_t middle_of(const SampleBlock& block, std::size_t axis) {
@@ -157,7 +158,7 @@ Cover LatticeBlocksWalk::far_of(SampleBlock& block, std::span<const std::uint32_
   block.cube = cube_around(block);
   Far far = far_triangles(block, triangles);
   Cover cover = cover_at_nodes(far.triangles, block.cube);
-  if (making_cost(cover.cost, false) > static_cast<double>(far.triangles.size()) * block.size()) {
+  if (cost_of_own_field(cover.cost) > static_cast<double>(far.triangles.size()) * block.size()) {
     far = {};
     cover = {};
     block.near.assign(triangles.begin(), triangles.end());
@@ -266,7 +267,8 @@ bool LatticeBlocksWalk::pays(const SampleBlock& block, const Division& division)
   if (block.near.empty() || block.size() > kLargeBlock) return true;
   double cost = 0.0;
   for (std::size_t n = 0; n < division.children.size(); ++n) {
-    cost += making_cost(division.far[n].cost, block.field != nullptr) + near_cost(division.children[n]);
+    const double far = division.far[n].cost;
+    cost += (block.field != nullptr ? field_cost(far) : cost_of_own_field(far)) + near_cost(division.children[n]);
   }
   return cost < near_cost(block);
 }
@@ -274,7 +276,7 @@ bool LatticeBlocksWalk::pays(const SampleBlock& block, const Division& division)
 double LatticeBlocksWalk::cost() const {
   const Division all = whole();
   const SampleBlock& block = all.children.front();
-  return (making_cost(all.far.front().cost, false) + estimate(block)) / block.size();
+  return (cost_of_own_field(all.far.front().cost) + estimate(block)) / block.size();
 }
 
 // The time for a block, from some of its parts: opposite ones, and further in other ones.
@@ -291,7 +293,7 @@ double LatticeBlocksWalk::estimate(const SampleBlock& block) const {
   });
   double making = 0.0, inside = 0.0, samples = 0.0;
   for (std::size_t n = 0; n < estimates.size(); ++n) {
-    making += making_cost(division.far[n].cost, true);
+    making += field_cost(division.far[n].cost);
     if ((looked_at >> n) % 2 == 0) continue;
     inside += estimates[n];
     samples += division.children[n].size();

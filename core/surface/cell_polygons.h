@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -114,7 +115,7 @@ class CellPolygons {
   bool cut_off_runs();
   bool cone_runs();
   [[nodiscard]] bool is_one_plane(const Run& a, const Run& b) const;
-  bool add_polygon(const Run& run, bool with_apex);
+  bool add_polygon(const Run& run, std::optional<std::uint32_t> apex = std::nullopt);
   void find_diagonals();
   [[nodiscard]] bool is_in_plane(const EdgePoint& plane, const Vec3& p) const;
 

@@ -179,10 +179,10 @@ void PatchMerger::sort_ring() {
 
 // The worst of the faces, their vertex pulled into `target`, that are left. The search ends at one that is not above
 // `needed`.
-double PatchMerger::worst_shape(std::uint32_t target, bool with_needles, double needed) const {
+double PatchMerger::worst_shape(std::uint32_t target, Needles needles, double needed) const {
   double worst = std::numeric_limits<double>::infinity();
   for (const StarFace& face : star_) {
-    if (face.next == target || face.last == target || (face.is_needle && !with_needles)) continue;
+    if (face.next == target || face.last == target || (face.is_needle && needles == Needles::kLeftOut)) continue;
     worst = std::min(
         worst, shape_along(planes_[face.plane].normal, position(target), position(face.next), position(face.last)));
     if (!(worst > needed)) break;
@@ -190,11 +190,11 @@ double PatchMerger::worst_shape(std::uint32_t target, bool with_needles, double 
   return worst;
 }
 
-void PatchMerger::find_planes(bool with_needles) {
+void PatchMerger::find_planes(Needles needles) {
   around_.clear();
   for (const StarFace& face : star_) {
-    if ((face.is_needle && !with_needles) || std::ranges::find(around_, face.plane) != around_.end()) continue;
-    around_.push_back(face.plane);
+    if (face.is_needle && needles == Needles::kLeftOut) continue;
+    if (std::ranges::find(around_, face.plane) == around_.end()) around_.push_back(face.plane);
   }
 }
 
@@ -264,9 +264,9 @@ std::optional<std::uint32_t> PatchMerger::target_at_node(std::uint32_t v) {
   constexpr double kMayLose = 0.25;
   if (!is_at_needle(v)) return std::nullopt;
   find_star(v);
-  find_planes(false);
+  find_planes(Needles::kLeftOut);
   const std::vector<std::uint32_t> faces = faces_at_node(v);
-  const double before = worst_shape(v, false, -std::numeric_limits<double>::infinity());
+  const double before = worst_shape(v, Needles::kLeftOut, -std::numeric_limits<double>::infinity());
   const double needed = std::max(0.0, kMayLose * std::min(kLeastShape, before));
   std::optional<std::uint32_t> best;
   std::pair best_rank(planes_through(v, faces), -limits_.needle);
@@ -274,7 +274,7 @@ std::optional<std::uint32_t> PatchMerger::target_at_node(std::uint32_t v) {
     const std::pair rank(planes_through(target, faces), -distance(v, target));
     if (!(rank > best_rank) || roles_[target] == VertexRole::kForeign || !is_at_node(v, target)) continue;
     if (!is_in_planes(position(target))) continue;
-    if (!(worst_shape(target, false, needed) > needed) || !keeps_topology(target)) continue;
+    if (!(worst_shape(target, Needles::kLeftOut, needed) > needed) || !keeps_topology(target)) continue;
     best = target;
     best_rank = rank;
   }
@@ -312,7 +312,7 @@ std::ptrdiff_t PatchMerger::planes_through(std::uint32_t v, const std::vector<st
 // The vertex that v can be pulled into with the best faces around.
 std::optional<std::uint32_t> PatchMerger::best_target(std::uint32_t v) {
   find_star(v);
-  find_planes(true);
+  find_planes(Needles::kCounted);
   const std::vector<std::uint32_t> rim = may_have_rim() ? rim_neighbours() : std::vector<std::uint32_t>();
   std::optional<std::uint32_t> best;
   bool by_geometry = true;
@@ -324,10 +324,10 @@ std::optional<std::uint32_t> PatchMerger::best_target(std::uint32_t v) {
       continue;
     }
     if (!best_shape) {
-      const double before = worst_shape(v, true, -std::numeric_limits<double>::infinity());
+      const double before = worst_shape(v, Needles::kCounted, -std::numeric_limits<double>::infinity());
       best_shape = std::max(0.0, std::min(kLeastShape, before));
     }
-    const double worst = worst_shape(target, true, *best_shape);
+    const double worst = worst_shape(target, Needles::kCounted, *best_shape);
     if (!(worst > *best_shape)) continue;
     by_geometry = false;
     if (!keeps_topology(target)) continue;

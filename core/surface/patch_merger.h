@@ -85,6 +85,7 @@ class PatchMerger {
     std::uint32_t plane, next, last;
     bool is_needle, is_hole;
   };
+  enum class Needles : std::uint8_t { kLeftOut, kCounted };
 
   using Target = std::optional<std::uint32_t> (PatchMerger::*)(std::uint32_t);
   void pull_all(Target target_of);
@@ -113,9 +114,9 @@ class PatchMerger {
   // What the next ones look at: the faces around `v`, and their planes.
   void find_star(std::uint32_t v);
   void sort_ring();
-  void find_planes(bool with_needles);
+  void find_planes(Needles needles);
   [[nodiscard]] bool is_in_planes(const Vec3& p) const;
-  [[nodiscard]] double worst_shape(std::uint32_t target, bool with_needles, double needed) const;
+  [[nodiscard]] double worst_shape(std::uint32_t target, Needles needles, double needed) const;
   [[nodiscard]] bool may_have_rim() const;
   [[nodiscard]] std::vector<std::uint32_t> rim_neighbours() const;
   [[nodiscard]] bool keeps_rim(std::uint32_t v, std::uint32_t target, const std::vector<std::uint32_t>& rim) const;

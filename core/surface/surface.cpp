@@ -64,7 +64,7 @@ class SurfaceMaker {
       const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
       find_points(margins);
       if (may_use_polygons()) {
-        Attempt first = attempt(points_of_sections(margins), margins, true, ContourCells::kPolygons);
+        Attempt first = attempt(points_of_sections(margins), margins, {.cells = ContourCells::kPolygons});
         if (first.cuts_nodes_off && factor == 1.0) {
           if (std::optional<FinishedSurface> other = beside_nodes(margins, first.faces / 2))
             first.made = std::move(other);
@@ -74,11 +74,11 @@ class SurfaceMaker {
       FacePoints sharp(in_cells(margins));
       for (int round = 0; round < kRounds; ++round) {
         if (may_use_polygons()) {
-          last = attempt(sharp, margins, true, ContourCells::kPolygons);
+          last = attempt(sharp, margins, {.cells = ContourCells::kPolygons});
           if (last.made) return *std::move(last.made);
         }
-        last = attempt(sharp, margins, true);
-        if (last.is_sharpened && !last.made) last = attempt(sharp, margins, false);
+        last = attempt(sharp, margins, {});
+        if (last.is_sharpened && !last.made) last = attempt(sharp, margins, {.sharpens = false});
         if (last.made) return *std::move(last.made);
         const std::vector<bool> dropped = involved(sharp, last);
         if (std::ranges::find(dropped, true) == dropped.end()) break;  // another round would be the same
@@ -93,6 +93,11 @@ class SurfaceMaker {
   static constexpr double kMostMargin = 0x1p-4;
   static constexpr double kOff = 4.0;  // margins that points of a plane may be off it, if not plane_tolerance()
   static constexpr int kRounds = 4;
+
+  struct AttemptOptions {
+    ContourCells cells = ContourCells::kTetrahedra;
+    bool sharpens = true;
+  };
 
   struct Attempt {
     std::optional<FinishedSurface> made;
@@ -117,7 +122,7 @@ class SurfaceMaker {
       if (nodes.empty() || nodes.reaches_border()) return std::nullopt;
       SurfaceMaker maker(mesh_, evaluators_, nodes, merge_only);
       maker.find_points(margins);
-      Attempt made = maker.attempt(maker.points_of_sections(margins), margins, true, ContourCells::kPolygons);
+      Attempt made = maker.attempt(maker.points_of_sections(margins), margins, {.cells = ContourCells::kPolygons});
       if (!made.made || !made.made->merged) return std::nullopt;
       return std::move(made.made->surface);
     };
@@ -157,10 +162,9 @@ class SurfaceMaker {
 
   // The merged surface is checked as a whole. The one before is checked only if undoing does not soon mend what that
   // has, or nothing is merged.
-  Attempt attempt(const FacePoints& sharp, const SurfaceMargins& margins, bool sharpens,
-                  ContourCells kind = ContourCells::kTetrahedra) {
+  Attempt attempt(const FacePoints& sharp, const SurfaceMargins& margins, const AttemptOptions& how) {
     enter("joining them by triangles");
-    auto [surface, tetrahedra, first_apex, fewer] = contour(in_cells(margins), sharp, kind);
+    auto [surface, tetrahedra, first_apex, fewer] = contour(in_cells(margins), sharp, how.cells);
     if (options_.single_precision) round_to_float(surface.mesh.vertices);
     Attempt result;
     const ContourPoints made_of{points_, sharp.positions(), std::span(surface.mesh.vertices).subspan(first_apex),
@@ -169,12 +173,13 @@ class SurfaceMaker {
     // Sharpening looks at sources, and moves faces into planes of others. Merging keeps them, so that it changes no
     // area of theirs.
     settler_.settle(surface);
-    if (sharpens && places == 0 && options_.thickness == 0.0) result.is_sharpened = sharpen(surface, margins, fewer);
+    if (how.sharpens && places == 0 && options_.thickness == 0.0)
+      result.is_sharpened = sharpen(surface, margins, fewer);
     if (result.is_sharpened) settler_.settle(surface);
     if ((places > 0 || !options_.merge_planes) && !is_right(surface, places, result)) return result;
     FinishedSurface made{std::move(surface)};
-    if (options_.merge_planes) made.merged = merge(made.surface, margins, kind, result);
-    if (options_.merge_planes && !made.merged && kind == ContourCells::kPolygons) return result;
+    if (options_.merge_planes) made.merged = merge(made.surface, margins, how.cells, result);
+    if (options_.merge_planes && !made.merged && how.cells == ContourCells::kPolygons) return result;
     if (result.faults && !result.faults->none()) return result;
     if (!made.merged && !is_right(made.surface, places, result)) return result;
     if (options_.simplify > 0.0) simplify_within_bound(made, margins);

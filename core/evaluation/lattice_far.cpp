@@ -141,22 +141,23 @@ class BlockValues {
 
 }  // namespace
 
-void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,
+void evaluate_blocks(const ScaledRows& part, const LatticeAxes& axes,
                      const std::function<CrossingsOfRow(std::size_t row)>& crossings, std::span<double> values,
                      std::atomic<std::uint64_t>* done) {
-  SampleBox part;
+  const ScaledMesh& mesh = part.mesh;
+  SampleBox box;  // of the whole lattice's samples
   for (std::size_t a = 0; a < 3; ++a) {
-    part.begin[a] = static_cast<std::size_t>(block.first[a] - lattice.index_min[a]);
-    part.end[a] = part.begin[a] + static_cast<std::size_t>(block.counts[a]);
+    box.begin[a] = static_cast<std::size_t>(part.block.first[a] - part.lattice.index_min[a]);
+    box.end[a] = box.begin[a] + static_cast<std::size_t>(part.block.counts[a]);
   }
   const BlockValues of_block(mesh, axes);
   mesh.blocks().sums.for_each_row(
-      axes, part, [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums) {
-        const std::size_t row = (z - part.begin[2]) * part.side(1) + y - part.begin[1];
-        const std::size_t in_row = x - part.begin[0];
-        const std::span<double> of_row = values.subspan(row * part.side(0), part.side(0));
+      axes, box, [&](std::size_t x, std::size_t y, std::size_t z, std::span<const double> sums) {
+        const std::size_t row = (z - box.begin[2]) * box.side(1) + y - box.begin[1];
+        const std::size_t in_row = x - box.begin[0];
+        const std::span<double> of_row = values.subspan(row * box.side(0), box.side(0));
         const auto set = [&](std::size_t begin, std::size_t end, double n, double caps) {
-          of_block.set({part.begin[0] + begin, y, z}, sums.subspan(begin - in_row, end - begin), n, caps,
+          of_block.set({box.begin[0] + begin, y, z}, sums.subspan(begin - in_row, end - begin), n, caps,
                        of_row.subspan(begin, end - begin));
           return true;
         };

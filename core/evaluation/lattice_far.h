@@ -10,6 +10,7 @@
 
 #include "core/crossings/lattice_sums.h"
 #include "core/data/lattice.h"
+#include "core/evaluation/row_crossings.h"
 #include "core/evaluation/scaled_mesh.h"
 #include "core/far/lattice_blocks.h"
 
@@ -33,11 +34,12 @@ struct CrossingsOfRow {
   RowRuns mesh, caps;
 };
 
-// Sets the winding numbers of the samples of `block`, within the tolerance; x fastest. `crossings` is asked for each
-// row, several times and by several threads; never where values do not depend on crossings. Those of a sample may be
-// kept in its value: they are read before. A value that may be a half-integer, where rules have their thresholds, is as
-// ScaledMesh::set_values() sets it. `done`, where given, grows by one per sample. Needs DefaultFloatingPoint.
-void evaluate_blocks(const ScaledMesh& mesh, const LatticeAxes& axes, const Lattice& lattice, const LatticeBlock& block,
+// Sets the winding numbers of the samples of `part`, of the lattice with these axes, within the tolerance; x fastest.
+// `crossings` is asked for each row, several times and by several threads; never where values do not depend on
+// crossings. Those of a sample may be kept in its value: they are read before. A value that may be a half-integer,
+// where rules have their thresholds, is as ScaledMesh::set_values() sets it. `done`, where given, grows by one per
+// sample. Needs DefaultFloatingPoint.
+void evaluate_blocks(const ScaledRows& part, const LatticeAxes& axes,
                      const std::function<CrossingsOfRow(std::size_t row)>& crossings, std::span<double> values,
                      std::atomic<std::uint64_t>* done);
 

@@ -218,8 +218,8 @@ std::size_t points_of_a_part(std::size_t points) {
 
 // Of less than 2^32 points. Many rays meet nothing: their values are 0. The others are put in order, some at a time,
 // each thread for itself.
-Tally evaluate_closed(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
-                      std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, ScaledMesh::Settling settling) {
+Tally evaluate_closed(const ScaledMeshes& meshes, std::span<const Vec3> points, const ValueOutputs& out,
+                      ScaledMesh::Settling settling) {
   const ScaledMesh& scaled = meshes.scaled();
   // What the points need is built before the loops over them, within which threads would wait for one another.
   scaled.prepare_points();
@@ -227,14 +227,14 @@ Tally evaluate_closed(const ScaledMeshes& meshes, std::span<const Vec3> points, 
   std::vector<std::vector<std::uint32_t>> others((points.size() + size - 1) / size);
   SharedTally tally;
   parallel_for(others.size(), 1, [&](std::size_t first, std::size_t last) {
-    PointTile tile(values, diagnostics, settling);
+    PointTile tile(out.values, out.diagnostics, settling);
     for (std::size_t part = first; part < last; ++part) {
       const std::size_t begin = part * size, end = std::min(begin + size, points.size());
-      set_to_zero(begin, end, values, diagnostics);
+      set_to_zero(begin, end, out.values, out.diagnostics);
       const MeetingRays rays(scaled, points, begin, end);
       tally.add(evaluate_in_order(scaled, points, rays.ordered(), tile));
       others[part].assign(rays.others().begin(), rays.others().end());
-      if (done) done->fetch_add(end - begin - others[part].size(), std::memory_order_relaxed);
+      out.count_done(end - begin - others[part].size());
     }
   });
   const bool all_taken = std::ranges::all_of(others, [](const auto& part) { return part.empty(); });
@@ -242,10 +242,10 @@ Tally evaluate_closed(const ScaledMeshes& meshes, std::span<const Vec3> points, 
   const ScaledMesh& unscaled = meshes.unscaled();
   unscaled.prepare_points();
   parallel_for(others.size(), 1, [&](std::size_t first, std::size_t last) {
-    PointTile tile(values, diagnostics, settling);
+    PointTile tile(out.values, out.diagnostics, settling);
     for (std::size_t part = first; part < last; ++part) {
       tally.add(evaluate_in_order(unscaled, points, others[part], tile));
-      if (done) done->fetch_add(others[part].size(), std::memory_order_relaxed);
+      out.count_done(others[part].size());
     }
   });
   return tally.total();
@@ -301,8 +301,8 @@ class BatchEvaluation {
 };
 
 // Some of the points, at most as many as CoherentOrder takes.
-Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
-                     std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, ScaledMesh::Settling settling) {
+Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, const ValueOutputs& out,
+                     ScaledMesh::Settling settling) {
   const ScaledMesh& scaled = meshes.scaled();
   // What the points need is built before the loops over them, within which threads would wait for one another.
   scaled.prepare_points();
@@ -313,12 +313,12 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, s
   const BatchEvaluation batch(meshes, order);
   SharedTally total;
   parallel_for(CoherentOrder::kBuckets, 1, [&](std::size_t begin, std::size_t end) {
-    PointTile tile(values, diagnostics, settling);
+    PointTile tile(out.values, out.diagnostics, settling);
     Tally tally;
     for (std::size_t bucket = begin; bucket < end; ++bucket) {
       const auto sorted = order[bucket];
       tally += blocks ? batch.evaluate_groups(blocks->sums, sorted, tile) : batch.evaluate(sorted, tile);
-      if (done) done->fetch_add(sorted.size(), std::memory_order_relaxed);
+      out.count_done(sorted.size());
     }
     tally += tile.evaluate(scaled);
     total.add(tally);
@@ -328,8 +328,8 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, s
 
 }  // namespace
 
-Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
-                      std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics, ScaledMesh::Settling settling) {
+Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, const ValueOutputs& out,
+                      ScaledMesh::Settling settling) {
   Tally total;
   const ScaledMesh& scaled = meshes.scaled();
   const bool closed = scaled.is_closed() && scaled.options().ray_engine == RayEngine::kScan;
@@ -337,10 +337,9 @@ Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, 
   const std::size_t batch = closed ? kIndexable : CoherentOrder::batch(scaled);
   for (std::size_t begin = 0; begin < points.size(); begin += batch) {
     const std::size_t count = std::min(batch, points.size() - begin);
-    const Diagnostics of_batch = diagnostics ? diagnostics->part(begin, count) : Diagnostics{};
-    total +=
-        (closed ? evaluate_closed : evaluate_batch)(meshes, points.subspan(begin, count), values.subspan(begin, count),
-                                                    done, diagnostics ? &of_batch : nullptr, settling);
+    const Diagnostics diagnostics = out.diagnostics ? out.diagnostics->part(begin, count) : Diagnostics{};
+    const ValueOutputs of_batch{out.values.subspan(begin, count), out.done, out.diagnostics ? &diagnostics : nullptr};
+    total += (closed ? evaluate_closed : evaluate_batch)(meshes, points.subspan(begin, count), of_batch, settling);
   }
   return total;
 }

@@ -1,19 +1,16 @@
 // The winding numbers of points, in an order in which neighbours share triangles.
 #pragma once
 
-#include <atomic>
-#include <cstdint>
 #include <span>
 
-#include "core/data/diagnostics.h"
 #include "core/evaluation/scaled_mesh.h"
+#include "core/evaluation/value_outputs.h"
 
 namespace raycone {
 
 // As WindingNumberEvaluator::evaluate(), or evaluate_unsettled(), of a mesh that has triangles. Needs
 // DefaultFloatingPoint.
-Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, std::span<double> values,
-                      std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics,
+Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, const ValueOutputs& out,
                       ScaledMesh::Settling settling = ScaledMesh::Settling::kDone);
 
 }  // namespace raycone

@@ -38,20 +38,20 @@ void add_boundary_term(const ScaledMesh& mesh, const LatticeRows& rows, std::siz
   tiles.finish();
 }
 
+// Of the rows [begin, end). Precondition: diagnostics are asked for.
 void bound_errors(const ScaledMesh& mesh, const LatticeRows& rows, std::size_t begin, std::size_t end,
-                  std::span<const double> values, const Diagnostics& diagnostics) {
+                  const ValueOutputs& out) {
   const std::size_t samples = rows.xs.size();
   for (std::size_t n = begin * samples; n < end * samples; ++n) {
     const Vec3 query = rows.row(n / samples).query(n % samples);
-    diagnostics.error_bound[n] = mesh.error_bound(query, values[n], diagnostics.crossings[n]);
+    out.diagnostics->error_bound[n] = mesh.error_bound(query, out.values[n], out.diagnostics->crossings[n]);
   }
 }
 
-void bound_all_errors(const ScaledMesh& mesh, const LatticeRows& rows, std::span<const double> values,
-                      std::atomic<std::uint64_t>* done, const Diagnostics& diagnostics) {
+void bound_all_errors(const ScaledMesh& mesh, const LatticeRows& rows, const ValueOutputs& out) {
   parallel_for_each(rows.size(), [&](std::size_t row) {
-    bound_errors(mesh, rows, row, row + 1, values, diagnostics);
-    if (done) done->fetch_add(rows.xs.size(), std::memory_order_relaxed);
+    bound_errors(mesh, rows, row, row + 1, out);
+    out.count_done(rows.xs.size());
   });
 }
 
@@ -81,26 +81,23 @@ void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::array<s
   tile.evaluate();
 }
 
-void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::span<double> values,
-                   std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, const ValueOutputs& out) {
   const std::size_t ny = rows.ys.size(), nz = rows.zs.size(), across = (ny + kBrick - 1) / kBrick;
   parallel_for_each(across * ((nz + kBrick - 1) / kBrick), [&](std::size_t n) {
     const std::size_t j = n % across * kBrick, k = n / across * kBrick;
     const std::array j_range{j, std::min(j + kBrick, ny)}, k_range{k, std::min(k + kBrick, nz)};
-    add_far_field(mesh, rows, j_range, k_range, values);
-    for (std::size_t row = k_range[0]; diagnostics && row < k_range[1]; ++row) {
-      bound_errors(mesh, rows, row * ny + j_range[0], row * ny + j_range[1], values, *diagnostics);
+    add_far_field(mesh, rows, j_range, k_range, out.values);
+    for (std::size_t row = k_range[0]; out.diagnostics && row < k_range[1]; ++row) {
+      bound_errors(mesh, rows, row * ny + j_range[0], row * ny + j_range[1], out);
     }
-    const std::size_t samples = (j_range[1] - j) * (k_range[1] - k) * rows.xs.size();
-    if (done) done->fetch_add(samples, std::memory_order_relaxed);
+    out.count_done((j_range[1] - j) * (k_range[1] - k) * rows.xs.size());
   });
 }
 
 // ---- The whole -------------------------------------------------------------------------------------------------
 
 // Sets the values of rows whose crossings are known, by the direct sum. Returns how many samples lie on the surface.
-std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sums, std::span<double> values,
-                          std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sums, const ValueOutputs& out) {
   std::atomic<std::uint64_t> on_surface = 0;
   const std::size_t rows_per_task = std::max<std::size_t>(1, 4 * kTile / rows.xs.size());
   parallel_for(rows.size(), rows_per_task, [&](std::size_t first, std::size_t last) {
@@ -108,9 +105,9 @@ std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, Latti
     for (std::size_t begin = first; begin < last; begin += rows_per_task) {
       const std::size_t end = std::min(begin + rows_per_task, last);
       for (std::size_t row = begin; row < end; ++row) here += sums.finish(row);
-      if (!mesh.is_closed()) add_boundary_term(mesh, rows, begin, end, values);
-      if (diagnostics) bound_errors(mesh, rows, begin, end, values, *diagnostics);
-      if (done) done->fetch_add((end - begin) * rows.xs.size(), std::memory_order_relaxed);
+      if (!mesh.is_closed()) add_boundary_term(mesh, rows, begin, end, out.values);
+      if (out.diagnostics) bound_errors(mesh, rows, begin, end, out);
+      out.count_done((end - begin) * rows.xs.size());
     }
     on_surface += here;
   });
@@ -118,13 +115,12 @@ std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, Latti
 }
 
 // Of a block that the scaled mesh can take, by blocks of samples.
-Tally evaluate_part_by_blocks(const ScaledRows& part, const LatticeAxes& axes, std::span<double> values,
-                              std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+Tally evaluate_part_by_blocks(const ScaledRows& part, const LatticeAxes& axes, const ValueOutputs& out) {
   const ScaledMesh& mesh = part.mesh;
   const LatticeRows& rows = part.rows;
   const std::size_t samples = rows.xs.size();
-  // Diagnostics take the crossings of each sample, and leave them in `values`.
-  LatticeSums sums = diagnostics               ? LatticeSums(rows.size(), samples, values, diagnostics)
+  // Diagnostics take the crossings of each sample, and leave them in its value.
+  LatticeSums sums = out.diagnostics           ? LatticeSums(rows.size(), samples, out.values, out.diagnostics)
                      : mesh.counts_crossings() ? LatticeSums(rows.size(), samples)
                                                : LatticeSums(rows.size(), samples, {}, nullptr);
   collect_crossings(part, sums);
@@ -132,50 +128,50 @@ Tally evaluate_part_by_blocks(const ScaledRows& part, const LatticeAxes& axes, s
   LatticeSums of_caps(rows.size(), samples, LatticeSums::OnSurface::kIgnore);
   sum_crossings(mesh.caps().mesh, rows, of_caps);
   const auto crossings_of_row = [&](std::size_t row) -> CrossingsOfRow {
-    const std::span<const double> each = values.subspan(row * samples, samples);
-    return {diagnostics ? RowRuns(each) : sums.runs(row), of_caps.runs(row)};
+    const std::span<const double> each = out.values.subspan(row * samples, samples);
+    return {out.diagnostics ? RowRuns(each) : sums.runs(row), of_caps.runs(row)};
   };
   // Bounds take a hundred times as long as values: a sample is done when it has its own.
-  evaluate_blocks(mesh, axes, part.lattice, part.block, crossings_of_row, values, diagnostics ? nullptr : done);
-  if (diagnostics) bound_all_errors(mesh, rows, values, done, *diagnostics);
+  evaluate_blocks(part, axes, crossings_of_row, out.values, out.diagnostics ? nullptr : out.done);
+  if (out.diagnostics) bound_all_errors(mesh, rows, out);
   return {sums.ties(), on_surface};
 }
 
 // Of a block whose coordinates along each axis the scaled mesh can take all, or none of.
 Tally evaluate_part(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block,
-                    std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+                    const ValueOutputs& out) {
   const ScaledRows part = scaled_rows(meshes, lattice, block);
   const ScaledMesh& mesh = part.mesh;
   const LatticeRows& rows = part.rows;
   const bool scaled = &mesh == &meshes.scaled();
   if (const std::optional<LatticeAxes> axes = scaled ? axes_for_blocks(mesh, lattice) : std::nullopt) {
-    return evaluate_part_by_blocks(part, *axes, values, done, diagnostics);
+    return evaluate_part_by_blocks(part, *axes, out);
   }
-  const bool counts = mesh.counts_crossings() || diagnostics;
-  LatticeSums sums(rows.size(), rows.xs.size(), counts ? values : std::span<double>(), diagnostics);
+  const bool counts = mesh.counts_crossings() || out.diagnostics;
+  LatticeSums sums(rows.size(), rows.xs.size(), counts ? out.values : std::span<double>(), out.diagnostics);
   collect_crossings(part, sums);
   if (!takes_far_field_on_lattice(mesh)) {
-    const std::uint64_t on_surface = finish_rows(mesh, rows, sums, values, done, diagnostics);
+    const std::uint64_t on_surface = finish_rows(mesh, rows, sums, out);
     return {sums.ties(), on_surface};
   }
   const std::uint64_t on_surface = finish_all(rows, sums);
-  add_far_field(mesh, rows, values, done, diagnostics);
+  add_far_field(mesh, rows, out);
   return {sums.ties(), on_surface};
 }
 
 }  // namespace
 
 Tally evaluate_block(const ScaledMeshes& meshes, const Lattice& lattice, const LatticeBlock& block,
-                     std::span<double> values, std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) {
+                     const ValueOutputs& out) {
   const std::vector<LatticeBlock> parts =
       parts_alike(lattice, block, [&](double x) { return meshes.scaled().can_take(x); });
-  if (parts.size() == 1) return evaluate_part(meshes, lattice, block, values, done, diagnostics);
+  if (parts.size() == 1) return evaluate_part(meshes, lattice, block, out);
   Tally tally;
   for (const LatticeBlock& part : parts) {
-    PartSamples samples(static_cast<std::size_t>(part.size()), diagnostics != nullptr);
-    const Diagnostics* part_diagnostics = diagnostics ? &samples.diagnostics() : nullptr;
-    tally += evaluate_part(meshes, lattice, part, samples.values(), done, part_diagnostics);
-    samples.copy_to(block, part, values, diagnostics);
+    PartSamples samples(static_cast<std::size_t>(part.size()), out.diagnostics != nullptr);
+    const Diagnostics* part_diagnostics = out.diagnostics ? &samples.diagnostics() : nullptr;
+    tally += evaluate_part(meshes, lattice, part, {samples.values(), out.done, part_diagnostics});
+    samples.copy_to(block, part, out.values, out.diagnostics);
   }
   return tally;
 }

@@ -319,11 +319,10 @@ void RuleBlocks::interpolate(const Candidate& candidate, const SampleBox& part, 
 
 }  // namespace
 
-void set_sides(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
-               const LatticeSums& cap_crossings, std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
+void set_sides(const SideSamples& samples, std::atomic<std::uint64_t>* done) {
+  const ScaledMesh& mesh = samples.mesh();
   assert(!mesh.is_closed() && mesh.is_in_scale());
   assert(mesh.counts_crossings() || takes_rough_sums(mesh));
-  const SideSamples samples(mesh, rows, rule, crossings, cap_crossings, sides);
   if (takes_rough_sums_alone(mesh)) return set_sides_by_rough_sums(samples, done);
   RuleBlocks blocks(samples);
   const auto finish = [&](Undecided left) {

@@ -37,7 +37,7 @@ Tally sides_by_values(const ScaledMeshes& meshes, const ScaledRows& part, const 
                       std::span<std::uint8_t> sides, std::atomic<std::uint64_t>* done) {
   const LatticeRows& rows = part.rows;
   std::vector<double> values(sides.size());
-  const Tally tally = evaluate_block(meshes, part.lattice, part.block, values, done, nullptr);
+  const Tally tally = evaluate_block(meshes, part.lattice, part.block, {values, done});
   const MeshRule mesh_rule(part.mesh, rule);
   const std::size_t samples = rows.xs.size();
   parallel_for(rows.size(), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
@@ -77,7 +77,8 @@ Tally evaluate_part(const ScaledMeshes& meshes, const Rule& rule, const Lattice&
   LatticeSums of_caps(rows.size(), rows.xs.size(), LatticeSums::OnSurface::kIgnore);
   sum_crossings(mesh.caps().mesh, rows, of_caps);
   // The triangles of a soup are its caps: nothing is left between them, and it has no others.
-  set_sides(mesh, rows, rule, mesh.counts_crossings() ? crossings : of_caps, of_caps, sides, done);
+  const LatticeSums& of_mesh = mesh.counts_crossings() ? crossings : of_caps;
+  set_sides(SideSamples(mesh, rows, rule, of_mesh, of_caps, sides), done);
   return tally;
 }
 

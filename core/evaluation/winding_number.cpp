@@ -17,12 +17,11 @@ namespace raycone {
 namespace {
 
 // Sets what a mesh without triangles has, 0. Returns whether it is one.
-bool set_to_zero_if_empty(const TriangleMesh& mesh, std::span<double> values, std::atomic<std::uint64_t>* done,
-                          const Diagnostics* diagnostics) {
+bool set_to_zero_if_empty(const TriangleMesh& mesh, const ValueOutputs& out) {
   if (!mesh.triangles.empty()) return false;
-  std::ranges::fill(values, 0.0);
-  if (done) done->fetch_add(values.size(), std::memory_order_relaxed);
-  if (diagnostics) diagnostics->set_to_zero();
+  std::ranges::fill(out.values, 0.0);
+  out.count_done(out.values.size());
+  if (out.diagnostics) out.diagnostics->set_to_zero();
   return true;
 }
 
@@ -107,9 +106,10 @@ Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBloc
   assert(values.size() == static_cast<std::size_t>(block.size()));
   if (block.size() == 0) return {};
   const ScaledMeshes& meshes = *implementation_;
-  if (set_to_zero_if_empty(meshes.scaled().mesh(), values, done, diagnostics)) return {};
+  const ValueOutputs out{values, done, diagnostics};
+  if (set_to_zero_if_empty(meshes.scaled().mesh(), out)) return {};
   const DefaultFloatingPoint guard;
-  return evaluate_block(meshes, lattice, block, values, done, diagnostics);
+  return evaluate_block(meshes, lattice, block, out);
 }
 
 Tally WindingNumberEvaluator::evaluate_sides(const Rule& rule, const Lattice& lattice, const LatticeBlock& block,
@@ -131,17 +131,18 @@ Tally WindingNumberEvaluator::evaluate(std::span<const Vec3> points, std::span<d
                                        std::atomic<std::uint64_t>* done, const Diagnostics* diagnostics) const {
   assert(values.size() == points.size());
   const ScaledMeshes& meshes = *implementation_;
-  if (set_to_zero_if_empty(meshes.scaled().mesh(), values, done, diagnostics)) return {};
+  const ValueOutputs out{values, done, diagnostics};
+  if (set_to_zero_if_empty(meshes.scaled().mesh(), out)) return {};
   const DefaultFloatingPoint guard;
-  return evaluate_points(meshes, points, values, done, diagnostics);
+  return evaluate_points(meshes, points, out);
 }
 
 void WindingNumberEvaluator::evaluate_unsettled(std::span<const Vec3> points, std::span<double> values) const {
   assert(values.size() == points.size());
   const ScaledMeshes& meshes = *implementation_;
-  if (set_to_zero_if_empty(meshes.scaled().mesh(), values, nullptr, nullptr)) return;
+  if (set_to_zero_if_empty(meshes.scaled().mesh(), {values})) return;
   const DefaultFloatingPoint guard;
-  evaluate_points(meshes, points, values, nullptr, nullptr, ScaledMesh::Settling::kLeft);
+  evaluate_points(meshes, points, {values}, ScaledMesh::Settling::kLeft);
 }
 
 }  // namespace raycone

@@ -2,12 +2,21 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "io/files/file_identity.h"
+
 namespace raycone {
+
+std::string relative_to_mesh(const std::string& path, const std::string& mesh) {
+  const std::filesystem::path directory = directory_of(mesh);
+  return std::filesystem::path(path).lexically_relative(directory.lexically_normal()).string();
+}
+
 // Row and stamp, texts, then lists behind their lengths; warnings are what is left.
 Message to_message(const JobResult& result) {
   Message message = to_record(result.row);

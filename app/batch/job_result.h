@@ -21,6 +21,9 @@ struct JobResult {
   std::vector<std::string> warnings{};  // of the row's message, one by one
 };
 
+// How JobResult::buffers name a file that `mesh` refers to, wherever both are.
+[[nodiscard]] std::string relative_to_mesh(const std::string& path, const std::string& mesh);
+
 [[nodiscard]] Message to_message(const JobResult& result);
 // Throws std::runtime_error for any other message.
 [[nodiscard]] JobResult result_from(const Message& message);

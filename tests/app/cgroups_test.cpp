@@ -1,13 +1,12 @@
-// Threads and memory by default: control groups of made-up system directories, this machine, and what is refused.
+// Control groups of made-up system directories.
+#include "app/process/cgroups.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <optional>
+#include <string>
 
-#include "app/process/cgroups.h"
-#include "app/process/default_threads.h"
-#include "app/process/memory_limit.h"
-#include "io/files/file_error.h"
-#include "io/files/readable_bytes.h"
 #include "tests/app/meshes.h"
 #include "tests/support/temporary_directory.h"
 
@@ -72,31 +71,6 @@ TEST_F(Cgroups, Version1MemoryWritesNoLimitAsAHugeNumber) {
   put("sys/fs/cgroup/memory/job/memory.limit_in_bytes", "5000\n");
   put("sys/fs/cgroup/memory/job/memory.usage_in_bytes", "6000\n");
   EXPECT_EQ(cgroup_memory(dir_.path()), 0U);
-}
-
-TEST(Limits, OfThisMachineAreSensible) {
-  EXPECT_GE(default_threads(), 1);
-  EXPECT_LE(default_threads(), kMaxThreads);
-  EXPECT_GT(available_memory(), 1'000'000U);
-  EXPECT_GT(peak_memory(), 100'000U);
-}
-
-TEST(CheckMemory, NamesBothNumbers) {
-  check_memory("a.obj", 0.0, std::uint64_t{1} << 40);
-  try {
-    check_memory("a.obj", 34.0 * (1 << 30), std::uint64_t{8} << 30);
-    FAIL() << "no exception";
-  } catch (const LimitError& error) {
-    EXPECT_EQ(std::string(error.what()).rfind("a.obj: needs about 34 GB of memory, but the limit is 8 GB", 0), 0U)
-        << error.what();
-  }
-}
-
-TEST(ReadableBytes, UsesTheUnitsOfTheOptions) {
-  EXPECT_EQ(readable_bytes(0), "0 bytes");
-  EXPECT_EQ(readable_bytes(1024), "1 kB");
-  EXPECT_EQ(readable_bytes(1.5 * 1024 * 1024), "1.5 MB");
-  EXPECT_EQ(readable_bytes(34.0 * (1 << 30)), "34 GB");
 }
 
 }  // namespace

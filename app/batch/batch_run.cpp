@@ -26,10 +26,6 @@ std::int64_t time_after(std::int64_t earlier) { return std::max(nanoseconds_now(
 
 }  // namespace
 
-std::string result_options(const BatchCommand& command, const std::string& grid) {
-  return grid_of(command.for_each) ? command.result_options + '\n' + grid : command.result_options;
-}
-
 BatchRun::BatchRun(const BatchCommand& command, const PlanOptions& options, BatchWork work)
     : command_(command),
       options_(options),
@@ -148,7 +144,7 @@ BatchRecord BatchRun::record_of(const BatchMesh& mesh, JobResult result) const {
                    .buffers = std::move(result.buffers),
                    .written = std::move(result.written),
                    .version = options_.version,
-                   .options = result_options(command_, result.grid),
+                   .options = options_with_grid(command_, result.grid),
                    .memory_limit = options_.memory_limit,
                    .default_memory_limit = options_.default_memory_limit,
                    .timeout = options_.timeout,

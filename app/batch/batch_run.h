@@ -19,10 +19,6 @@
 
 namespace raycone {
 
-// What outputs and results depend on beside the mesh, as text. `grid`: the hash of that of --like, "" where there is
-// none.
-[[nodiscard]] std::string result_options(const BatchCommand& command, const std::string& grid);
-
 // What there is to do.
 struct BatchWork {
   std::vector<std::string> searched;  // directories

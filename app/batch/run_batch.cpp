@@ -101,7 +101,7 @@ PlanOptions plan_options(const BatchCommand& command, const SupervisorOptions& l
           .writes = command.writes,
           .retry_failed = command.retry_failed,
           .version = kVersion,
-          .options = result_options(command, grid ? sha256_of_file(grid->path) : ""),
+          .options = options_with_grid(command, grid ? sha256_of_file(grid->path) : ""),
           .memory_limit = limits.memory_limit,
           .default_memory_limit = !command.run.memory_limit,
           .timeout = limits.timeout};

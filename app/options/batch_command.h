@@ -60,6 +60,12 @@ struct BatchCommand {
   bool dry_run = false;
 };
 
+// All that results depend on beside the mesh: its result_options, and the grid of --like by its `hash`; "" where there
+// is none.
+[[nodiscard]] inline std::string options_with_grid(const BatchCommand& command, const std::string& hash) {
+  return grid_of(command.for_each) ? command.result_options + '\n' + hash : command.result_options;
+}
+
 struct ReportCommand {
   std::string directory;  // of a batch
   std::string output;     // "-": standard output

@@ -291,7 +291,7 @@ FinishedSurface closed_surface(const TriangleMesh& mesh, const FineAndRough& eva
     throw LatticeOutOfRange("the lattice is beyond what " + precision + " can hold");
   }
   if (!(margin <= kMostOfFirst))
-    throw LatticeTooFine("voxels are too small for " + precision + " so far from the origin");
+    throw LatticeTooFine("voxels are too small for " + precision + " beside the largest coordinate");
   if (is_out_of_scale(inside.lattice(), options)) {
     std::optional<FinishedSurface> surface =
         made_in_scale(mesh, evaluators, inside, options, [](auto& scaled, auto& in_scale, auto& nodes, auto& as) {

@@ -52,7 +52,8 @@ class SurfaceFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The lattice is so far from the origin that coordinates cannot tell its cells apart.
+// The sides of cells are so small beside the largest coordinate of the lattice, along any axis, that coordinates cannot
+// tell them apart.
 class LatticeTooFine : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

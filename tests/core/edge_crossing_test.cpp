@@ -1,4 +1,4 @@
-// Where segments pass through triangles.
+// Where segments and edges of a lattice pass through triangles.
 #include "core/surface/edge_crossing.h"
 
 #include <gtest/gtest.h>
@@ -12,6 +12,7 @@
 #include <random>
 #include <vector>
 
+#include "core/evaluation/winding_number.h"
 #include "core/exact/quad.h"
 #include "core/machine/floating_point.h"
 #include "tests/support/shapes.h"
@@ -105,6 +106,125 @@ TEST(SegmentHit, IsRightWhereTheSegmentIsNearlyInThePlane) {
     EXPECT_EQ(found[0].at, *at);
   }
   EXPECT_GT(hits, 300);
+}
+
+// Integers below 2^53: the ends are a few units from the plane, times the normal's length, which is 2^102. They were
+// made by extended Euclid.
+struct NearPlane {
+  std::array<Vec3, 5> points;  // the triangle, and the segment's ends
+  double at;
+};
+const std::array kNearPlanes{
+    NearPlane{{{{-2602258250006602, 1945105548177019, -1249914251404426},
+                {931029837885614, -2054786193315149, -1267997258479291},
+                {1671228412120988, 109680645138130, 2517911509883717},
+                {-567493322440092, 182375257459227, -577791810677654},
+                {160380232180817, -451932101805160, -342088889388341}}},
+              2.0 / 3},
+    NearPlane{{{{6431330984513, 691886611335235, 4215872122113501},
+                {6254322637260755, -4523262273640865, -1921658404533798},
+                {-6260753968245268, 3831375662305630, -2294213717579703},
+                {-1285992144330063, 840921260009285, -144635094155592},
+                {782665341466791, -425510628788914, 610495691578839}}},
+              100.0 / 117},
+    NearPlane{{{{-1427546070851317, -731132088316662, 142676961843506},
+                {-188226475480816, 4213178900257989, -979171615995316},
+                {1615772546332133, -3482046811941327, 836494654151810},
+                {-521630878201291, -32139155233682, -2289497710301},
+                {137346563752556, -634714622615616, 149545454974409}}},
+              1.0 / 4},
+    NearPlane{{{{-805847324991452, -127898668752509, 2449415547507540},
+                {-2999436072989078, 3195690063046723, -2717917812840543},
+                {3805283397980530, -3067791394294214, 268502265333003},
+                {87905567764134, 23697660966699, -298606830654067},
+                {323952150587965, -207263119777208, -150889079491177}}},
+              100.0 / 117},
+};
+
+// Where both ends lie next to the plane their distances cancel in 113 bits.
+TEST(EdgeCrossing, PlacesAreRightWhereBothEndsAreNextToThePlane) {
+  const DefaultFloatingPoint guard;
+  for (const auto& [points, expected] : kNearPlanes) {
+    const auto& [a, b, c, p, q] = points;
+    const std::optional<double> at = segment_hit(p, q, a, b, c);
+    ASSERT_TRUE(at);
+    EXPECT_NEAR(*at, expected, 1e-15);
+    const TriangleMesh mesh{{a, b, c}, {{0, 1, 2}}};
+    HitFinder finder(mesh);
+    finder.enter(p, std::vector<std::uint32_t>{0});
+    std::vector<SegmentHit> hits;
+    finder.find(q, true, hits);
+    ASSERT_EQ(hits.size(), 1U);
+    EXPECT_EQ(hits[0].at, *at);
+  }
+}
+
+// And where products of lengths underflow.
+TEST(EdgeCrossing, PlacesAreThoseOfAnyScale) {
+  const DefaultFloatingPoint guard;
+  Random random(7);
+  int hit = 0;
+  for (int n = 0; n < 2000; ++n) {
+    std::array<Vec3, 5> points;
+    for (Vec3& v : points) v = {uniform(random, -1, 1), uniform(random, -1, 1), 1e-6 * uniform(random, -1, 1)};
+    const auto at_scale = [&](double s) {
+      return segment_hit(s * points[3], s * points[4], s * points[0], s * points[1], s * points[2]);
+    };
+    const std::optional<double> at = at_scale(1.0);
+    hit += at ? 1 : 0;
+    for (const double s : {0x1p-200, 0x1p-345, 0x1p-358, 0x1p-362, 0x1p300}) {
+      const std::optional<double> scaled = at_scale(s);
+      ASSERT_EQ(at.has_value(), scaled.has_value()) << s;
+      EXPECT_NEAR(at.value_or(0.0), scaled.value_or(0.0), 1e-15) << s;
+    }
+  }
+  EXPECT_GT(hit, 100);
+}
+
+// Jumps are what a triangle changes in w, as sums of solid angles on both sides tell.
+TEST(EdgeCrossing, JumpsAreThoseOfTheWindingNumber) {
+  Random random(6);
+  int known = 0;
+  const auto point = [&] { return Vec3{uniform(random, -1, 1), uniform(random, -1, 1), uniform(random, -1, 1)}; };
+  for (int n = 0; n < 400; ++n) {
+    const TriangleMesh mesh{{point(), point(), point()}, {{0, 1, 2}}};
+    const WindingNumberEvaluator evaluator(mesh);
+    const Vec3 end = point(), other = point();
+    HitFinder finder(mesh);
+    finder.enter(end, std::vector<std::uint32_t>{0});
+    for (const bool from_end : {true, false}) {
+      std::vector<SegmentHit> hits;
+      finder.find(other, from_end, hits);
+      if (hits.empty()) continue;
+      ASSERT_EQ(hits.size(), 1U);
+      const Vec3 &p = from_end ? end : other, &q = from_end ? other : end;
+      constexpr double kStep = 0x1p-20;
+      const std::vector<Vec3> places{p + (hits[0].at - kStep) * (q - p), p + (hits[0].at + kStep) * (q - p)};
+      std::vector<double> w(2);
+      evaluator.evaluate(places, w);
+      EXPECT_EQ(std::round(w[1] - w[0]), hits[0].jump);
+      ++known;
+    }
+  }
+  EXPECT_GT(known, 30);
+}
+
+// Through a side, or to a point of the plane, nobody knows.
+TEST(EdgeCrossing, JumpsAreNotKnownAtSides) {
+  const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
+  HitFinder finder(mesh);
+  const auto jump = [&](const Vec3& end, const Vec3& other) {
+    finder.enter(end, std::vector<std::uint32_t>{0});
+    std::vector<SegmentHit> hits;
+    finder.find(other, true, hits);
+    return hits.empty() ? 99 : int{hits[0].jump};
+  };
+  EXPECT_EQ(jump({0.25, 0.25, -1}, {0.25, 0.25, 1}), -1);  // to its front, where w is less
+  EXPECT_EQ(jump({0.25, 0.25, 1}, {0.25, 0.25, -1}), 1);
+  EXPECT_EQ(jump({0.5, 0.0, -1}, {0.5, 0.0, 1}), 0);
+  EXPECT_EQ(jump({0.0, 0.0, -1}, {0.0, 0.0, 1}), 0);
+  EXPECT_EQ(jump({0.25, 0.25, 0}, {0.25, 0.25, 1}), 0);
+  EXPECT_EQ(jump({2.0, 2.0, -1}, {2.0, 2.0, 1}), 99);
 }
 
 }  // namespace

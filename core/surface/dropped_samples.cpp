@@ -8,7 +8,7 @@
 #include "core/machine/threads.h"
 #include "core/mesh/components.h"
 #include "core/mesh/triangle_runs.h"
-#include "core/surface/face_points.h"
+#include "core/surface/plane_tolerance.h"
 
 namespace raycone {
 namespace {

@@ -14,11 +14,6 @@
 
 namespace raycone {
 
-// How far apart numbers of one plane may be, world units: a billionth of a voxel, or what the coordinates' own format
-// rounds. That is 2^-22 of the largest one where all of them are numbers in single precision, and 2^-20 where the
-// others have nine digits at most, as numbers in text files; a thousandth of a voxel at most, far from the origin.
-[[nodiscard]] double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice);
-
 // A face of a cell, as in kuhn::kFaces, in one number, which increases with the cell and then with the face.
 inline constexpr std::uint64_t kFacesPerCell = 16;  // a power of two, more than a cell has
 [[nodiscard]] constexpr std::uint64_t number_of_face(std::uint32_t cell, std::size_t face) {

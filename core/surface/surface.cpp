@@ -24,6 +24,7 @@
 #include "core/surface/face_points.h"
 #include "core/surface/face_sources.h"
 #include "core/surface/fault_places.h"
+#include "core/surface/plane_tolerance.h"
 #include "core/surface/source_plane.h"
 #include "core/surface/surface_beside_nodes.h"
 #include "core/surface/surface_cells.h"

@@ -17,6 +17,7 @@
 #include "core/mesh/mesh_statistics.h"
 #include "core/surface/certificate.h"
 #include "core/surface/contour.h"
+#include "core/surface/plane_tolerance.h"
 #include "core/surface/surface.h"
 #include "core/surface/vertex_places.h"
 #include "tests/support/shapes.h"

@@ -14,7 +14,7 @@
 #include "core/surface/certificate.h"
 #include "core/surface/checked_simplify.h"
 #include "core/surface/component_signs.h"
-#include "core/surface/face_points.h"
+#include "core/surface/plane_tolerance.h"
 #include "core/surface/source_plane.h"
 #include "core/surface/star_change.h"
 #include "core/surface/surface.h"

@@ -18,9 +18,18 @@ BESIDE = {"core/distance": ["core/data", "core/machine", "core/exact", "core/mes
           "core/intersections": ["core/data", "core/machine", "core/exact", "core/mesh"],
           "core/orientation": ["core/data", "core/machine", "core/exact", "core/mesh", "core/crossings", "core/boundary"],
           "core/arrangement": ["core/data", "core/machine", "core/exact", "core/mesh", "core/intersections"],
-          "core/surface": ["core/data", "core/machine", "core/exact", "core/mesh", "core/intersections",
-                           "core/arrangement", "core/crossings", "core/boundary", "core/far", "core/evaluation", "core/distance"],
           "core/sampling": ["core/data", "core/machine", "core/exact"]}
+# The steps of a closed surface.
+BELOW_CELLS = [*STEPS, "core/distance", "core/intersections"]
+SURFACE = {"core/cells": STEPS,
+           "core/certificate": [*STEPS, "core/intersections", "core/cells"],
+           "core/contour": [*STEPS, "core/cells"],
+           "core/sharpening": [*BELOW_CELLS, "core/cells", "core/certificate"],
+           "core/merging": [*BELOW_CELLS, "core/cells", "core/certificate"],
+           "core/surface": [*BELOW_CELLS, "core/cells", "core/certificate", "core/contour", "core/sharpening",
+                            "core/merging"]}
+SURFACE["core/filling"] = [*SURFACE["core/surface"], "core/arrangement", "core/surface"]
+BESIDE.update(SURFACE)
 FILES = ["io/files", "io/mesh", "io/points"]
 FIELDS = ["io/files", "io/fields", "io/vdb"]
 OF_CORE = {"core/data", "core/machine"}  # what io may see of core
@@ -33,7 +42,7 @@ APP = {"app/text": [],
        "app/report": ["app/process", "io/fields", "io/mesh", "core/evaluation", "core/orientation"],
        "app/picture": ["core/data", "io/fields"],
        "app/input": ["app/options", "io/vdb"],
-       "app/fields": ["app/input", "app/report", "core/distance", "core/surface"],
+       "app/fields": ["app/input", "app/report", "core/distance", "core/filling"],
        "app/samples": ["app/fields", "app/picture"],
        "app/run": ["app/samples", "core/intersections"],
        "app/batch": ["app/run"],

@@ -9,7 +9,7 @@
 #include "app/options/field_options.h"
 #include "app/process/memory_limit.h"
 #include "core/distance/distance.h"
-#include "core/surface/mesh_as_surface.h"
+#include "core/filling/mesh_as_surface.h"
 #include "core/surface/surface_measures.h"
 #include "core/surface/thicken.h"
 #include "io/files/ascii.h"

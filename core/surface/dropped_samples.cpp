@@ -5,10 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "core/cells/plane_tolerance.h"
 #include "core/machine/threads.h"
 #include "core/mesh/components.h"
 #include "core/mesh/triangle_runs.h"
-#include "core/surface/plane_tolerance.h"
 
 namespace raycone {
 namespace {

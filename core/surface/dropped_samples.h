@@ -8,11 +8,11 @@
 #include <span>
 #include <vector>
 
+#include "core/cells/node_set.h"
+#include "core/cells/surface_mesh.h"
 #include "core/data/triangle_mesh.h"
 #include "core/data/vec3.h"
 #include "core/distance/distance.h"
-#include "core/surface/node_set.h"
-#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

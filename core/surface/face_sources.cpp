@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/cells/cell_creases.h"
+#include "core/cells/edge_crossing.h"
+#include "core/cells/surface_mesh.h"
 #include "core/machine/numbers_where.h"
 #include "core/machine/threads.h"
-#include "core/surface/cell_creases.h"
-#include "core/surface/edge_crossing.h"
-#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 namespace {

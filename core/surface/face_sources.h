@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/cells/surface_mesh.h"
+#include "core/cells/triangle_normals.h"
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/distance/distance.h"
-#include "core/surface/surface_mesh.h"
-#include "core/surface/triangle_normals.h"
 
 namespace raycone {
 

@@ -7,12 +7,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/cells/edge_roots.h"
+#include "core/cells/node_set.h"
+#include "core/cells/surface_mesh.h"
+#include "core/certificate/certificate.h"
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
-#include "core/surface/certificate.h"
-#include "core/surface/edge_roots.h"
-#include "core/surface/node_set.h"
-#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -7,11 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/cells/source_plane.h"
+#include "core/certificate/certificate.h"
 #include "core/data/single_precision.h"
 #include "core/distance/distance.h"
-#include "core/surface/certificate.h"
-#include "core/surface/mesh_corners.h"
-#include "core/surface/source_plane.h"
+#include "core/merging/mesh_corners.h"
 
 namespace raycone {
 namespace {

@@ -10,10 +10,10 @@
 #include <optional>
 #include <span>
 
+#include "core/cells/node_set.h"
+#include "core/cells/surface_mesh.h"
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
-#include "core/surface/node_set.h"
-#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -4,9 +4,9 @@
 #include <functional>
 #include <optional>
 
+#include "core/cells/edge_roots.h"
+#include "core/cells/node_set.h"
 #include "core/data/triangle_mesh.h"
-#include "core/surface/edge_roots.h"
-#include "core/surface/node_set.h"
 #include "core/surface/surface.h"
 
 namespace raycone {

@@ -11,11 +11,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/cells/edge_crossing.h"
 #include "core/distance/distance.h"
 #include "core/exact/scale.h"
 #include "core/machine/threads.h"
 #include "core/mesh/components.h"
-#include "core/surface/edge_crossing.h"
 #include "core/surface/surface.h"
 
 namespace raycone {

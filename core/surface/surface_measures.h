@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/cells/edge_roots.h"
+#include "core/cells/surface_mesh.h"
 #include "core/data/triangle_mesh.h"
 #include "core/surface/dropped_samples.h"
-#include "core/surface/edge_roots.h"
-#include "core/surface/surface_mesh.h"
 
 namespace raycone {
 

@@ -3,12 +3,12 @@
 
 #include <vector>
 
+#include "core/cells/edge_points.h"
+#include "core/cells/edge_roots.h"
+#include "core/cells/node_set.h"
+#include "core/cells/surface_cells.h"
 #include "core/data/triangle_mesh.h"
 #include "core/distance/distance.h"
-#include "core/surface/edge_points.h"
-#include "core/surface/edge_roots.h"
-#include "core/surface/node_set.h"
-#include "core/surface/surface_cells.h"
 
 namespace raycone {
 

@@ -11,8 +11,8 @@
 
 #include "app/options/field_options.h"
 #include "app/process/memory_limit.h"
+#include "core/cells/node_set.h"
 #include "core/mesh/weld.h"
-#include "core/surface/node_set.h"
 #include "io/files/file_error.h"
 #include "tests/support/shapes.h"
 

@@ -1,5 +1,5 @@
 // Polygons in place of the triangles of tetrahedra: the same surface, in fewer faces.
-#include "core/surface/cell_polygons.h"
+#include "core/contour/cell_polygons.h"
 
 #include <gtest/gtest.h>
 
@@ -11,15 +11,15 @@
 #include <utility>
 #include <vector>
 
+#include "core/cells/plane_tolerance.h"
+#include "core/certificate/certificate.h"
+#include "core/contour/contour.h"
+#include "core/contour/vertex_places.h"
 #include "core/distance/distance.h"
 #include "core/evaluation/winding_number.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/mesh_statistics.h"
-#include "core/surface/certificate.h"
-#include "core/surface/contour.h"
-#include "core/surface/plane_tolerance.h"
 #include "core/surface/surface.h"
-#include "core/surface/vertex_places.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

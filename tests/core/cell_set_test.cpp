@@ -1,5 +1,5 @@
 // Boxes that meet must be found, whatever their sizes; and soon.
-#include "core/surface/cell_set.h"
+#include "core/cells/cell_set.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/surface/cell_triangles.h"
+#include "core/cells/cell_triangles.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <numbers>
 
-#include "core/surface/surface_cells.h"
+#include "core/cells/surface_cells.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

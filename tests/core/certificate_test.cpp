@@ -1,5 +1,5 @@
 // Whether a surface is closed, embedded and right at each node, at once and change by change.
-#include "core/surface/certificate.h"
+#include "core/certificate/certificate.h"
 
 #include <gtest/gtest.h>
 
@@ -10,12 +10,12 @@
 #include <random>
 #include <vector>
 
+#include "core/cells/surface_cells.h"
+#include "core/contour/contour.h"
 #include "core/machine/floating_point.h"
+#include "core/merging/merge_planes.h"
+#include "core/merging/repeated_check.h"
 #include "core/mesh/used_part.h"
-#include "core/surface/contour.h"
-#include "core/surface/merge_planes.h"
-#include "core/surface/repeated_check.h"
-#include "core/surface/surface_cells.h"
 #include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"
 

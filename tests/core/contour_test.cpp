@@ -1,5 +1,5 @@
 // The surface between nodes, for any labels of nodes and any points: closed, embedded, and right at each node.
-#include "core/surface/contour.h"
+#include "core/contour/contour.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "core/cells/surface_cells.h"
 #include "core/machine/floating_point.h"
-#include "core/surface/surface_cells.h"
 #include "tests/core/surface_cases.h"
 #include "tests/support/exact_intersections.h"
 #include "tests/support/shapes.h"

@@ -1,5 +1,5 @@
 // Where segments and edges of a lattice pass through triangles.
-#include "core/surface/edge_crossing.h"
+#include "core/cells/edge_crossing.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/surface/edge_roots.h"
+#include "core/cells/edge_roots.h"
 
 #include <gtest/gtest.h>
 

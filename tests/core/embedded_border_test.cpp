@@ -1,4 +1,4 @@
-#include "core/surface/embedded_border.h"
+#include "core/filling/embedded_border.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "core/arrangement/take_apart.h"
+#include "core/cells/node_set.h"
+#include "core/certificate/certificate.h"
 #include "core/evaluation/winding_number.h"
-#include "core/surface/certificate.h"
-#include "core/surface/node_set.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

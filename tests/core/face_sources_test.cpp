@@ -8,9 +8,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/cells/edge_crossing.h"
 #include "core/distance/distance.h"
 #include "core/machine/floating_point.h"
-#include "core/surface/edge_crossing.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

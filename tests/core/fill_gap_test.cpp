@@ -1,5 +1,5 @@
 // Gaps between planes of a mesh: filled by these planes, where the mesh goes on in them.
-#include "core/surface/fill_gap.h"
+#include "core/sharpening/fill_gap.h"
 
 #include <gtest/gtest.h>
 

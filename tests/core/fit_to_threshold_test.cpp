@@ -1,4 +1,4 @@
-#include "core/surface/fit_to_threshold.h"
+#include "core/filling/fit_to_threshold.h"
 #include "core/mesh/mesh_statistics.h"
 
 #include <gtest/gtest.h>
@@ -11,19 +11,19 @@
 #include <optional>
 #include <vector>
 
+#include "core/cells/surface_mesh.h"
+#include "core/certificate/certificate.h"
 #include "core/data/single_precision.h"
 #include "core/evaluation/winding_number.h"
 #include "core/exact/direct_sum.h"
+#include "core/filling/closed_by_caps.h"
+#include "core/filling/fill_check.h"
+#include "core/filling/fill_faces.h"
+#include "core/filling/mesh_as_surface.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/used_part.h"
 #include "core/mesh/weld.h"
-#include "core/surface/certificate.h"
-#include "core/surface/closed_by_caps.h"
-#include "core/surface/fill_check.h"
-#include "core/surface/fill_faces.h"
-#include "core/surface/mesh_as_surface.h"
-#include "core/surface/surface_mesh.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -1,4 +1,4 @@
-#include "core/surface/line_roots.h"
+#include "core/cells/line_roots.h"
 
 #include <gtest/gtest.h>
 

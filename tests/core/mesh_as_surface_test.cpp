@@ -1,6 +1,6 @@
-#include "core/surface/mesh_as_surface.h"
+#include "core/filling/mesh_as_surface.h"
+#include "core/certificate/border_components.h"
 #include "core/mesh/components.h"
-#include "core/surface/border_components.h"
 
 #include <gtest/gtest.h>
 
@@ -13,16 +13,16 @@
 #include <tuple>
 #include <vector>
 
+#include "core/cells/source_plane.h"
+#include "core/cells/surface_cells.h"
+#include "core/cells/surface_mesh.h"
+#include "core/certificate/certificate.h"
 #include "core/data/single_precision.h"
 #include "core/distance/distance.h"
+#include "core/filling/seen_by_nodes.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/used_part.h"
 #include "core/mesh/weld.h"
-#include "core/surface/certificate.h"
-#include "core/surface/seen_by_nodes.h"
-#include "core/surface/source_plane.h"
-#include "core/surface/surface_cells.h"
-#include "core/surface/surface_mesh.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

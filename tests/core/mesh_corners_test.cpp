@@ -1,12 +1,12 @@
 // Vertices of a surface that take the place of corners of the mesh.
-#include "core/surface/mesh_corners.h"
+#include "core/merging/mesh_corners.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "core/surface/surface_mesh.h"
+#include "core/cells/surface_mesh.h"
 
 namespace raycone {
 namespace {

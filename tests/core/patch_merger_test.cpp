@@ -1,5 +1,5 @@
 // Faces of one plane that become one.
-#include "core/surface/patch_merger.h"
+#include "core/merging/patch_merger.h"
 
 #include <gtest/gtest.h>
 
@@ -8,9 +8,9 @@
 #include <random>
 #include <vector>
 
+#include "core/cells/surface_cells.h"
 #include "core/machine/floating_point.h"
-#include "core/surface/merge_planes.h"
-#include "core/surface/surface_cells.h"
+#include "core/merging/merge_planes.h"
 #include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"
 

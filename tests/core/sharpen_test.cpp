@@ -1,5 +1,5 @@
 // Strips of a surface that are pulled to the edges of the mesh.
-#include "core/surface/sharpen.h"
+#include "core/sharpening/sharpen.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 #include "core/distance/distance.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/mesh_statistics.h"
-#include "core/surface/checked_sharpen.h"
+#include "core/sharpening/checked_sharpen.h"
 #include "core/surface/face_sources.h"
 #include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"

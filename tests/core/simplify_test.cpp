@@ -1,5 +1,5 @@
 // Surfaces with fewer triangles, and surfaces of sets that have grown.
-#include "core/surface/simplify.h"
+#include "core/merging/simplify.h"
 
 #include <gtest/gtest.h>
 
@@ -7,18 +7,18 @@
 #include <cmath>
 #include <vector>
 
+#include "core/cells/plane_tolerance.h"
+#include "core/cells/source_plane.h"
+#include "core/cells/surface_mesh.h"
+#include "core/certificate/certificate.h"
+#include "core/certificate/component_signs.h"
 #include "core/data/single_precision.h"
 #include "core/distance/distance.h"
+#include "core/merging/checked_simplify.h"
+#include "core/merging/star_change.h"
 #include "core/mesh/used_part.h"
 #include "core/mesh/weld.h"
-#include "core/surface/certificate.h"
-#include "core/surface/checked_simplify.h"
-#include "core/surface/component_signs.h"
-#include "core/surface/plane_tolerance.h"
-#include "core/surface/source_plane.h"
-#include "core/surface/star_change.h"
 #include "core/surface/surface.h"
-#include "core/surface/surface_mesh.h"
 #include "core/surface/thicken.h"
 #include "tests/support/shapes.h"
 

@@ -6,9 +6,9 @@
 #include <numeric>
 #include <vector>
 
+#include "core/certificate/certificate.h"
 #include "core/mesh/components.h"
 #include "core/mesh/exterior_edges.h"
-#include "core/surface/certificate.h"
 #include "tests/support/border_sources.h"
 #include "tests/support/shapes.h"
 

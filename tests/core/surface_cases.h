@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "core/surface/edge_points.h"
-#include "core/surface/face_points.h"
+#include "core/cells/edge_points.h"
+#include "core/cells/surface_cells.h"
+#include "core/contour/face_points.h"
 #include "core/surface/surface.h"
-#include "core/surface/surface_cells.h"
 #include "tests/support/shapes.h"
 
 namespace raycone::test {

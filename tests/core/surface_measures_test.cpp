@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/cells/surface_cells.h"
 #include "core/distance/distance.h"
 #include "core/surface/surface.h"
-#include "core/surface/surface_cells.h"
 #include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"
 

@@ -19,13 +19,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/cells/edge_crossing.h"
+#include "core/cells/surface_cells.h"
 #include "core/distance/distance.h"
+#include "core/filling/mesh_as_surface.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/mesh_statistics.h"
 #include "core/mesh/weld.h"
-#include "core/surface/edge_crossing.h"
-#include "core/surface/mesh_as_surface.h"
-#include "core/surface/surface_cells.h"
 #include "core/surface/surface_measures.h"
 #include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"

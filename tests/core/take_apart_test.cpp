@@ -10,13 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "core/cells/node_set.h"
+#include "core/certificate/certificate.h"
 #include "core/data/lattice.h"
 #include "core/data/single_precision.h"
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/components.h"
 #include "core/mesh/weld.h"
-#include "core/surface/certificate.h"
-#include "core/surface/node_set.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {

@@ -539,48 +539,48 @@ MUTANTS = [
 
     # --- Surfaces ---
     Mutant("surface_hit_without_edges", "a lattice edge that passes through an edge of a triangle meets it", [
-        ("core/surface/edge_crossing.cpp", "first * third >= 0 && second * third >= 0", "first * third > 0 && second * third > 0")]),
+        ("core/cells/edge_crossing.cpp", "first * third >= 0 && second * third >= 0", "first * third > 0 && second * third > 0")]),
     Mutant("surface_turned", "loops around three inside nodes run the other way", [
-        ("core/surface/contour.cpp", "    if (!lone_inside) positive = !positive;\n", "")]),
+        ("core/contour/contour.cpp", "    if (!lone_inside) positive = !positive;\n", "")]),
     Mutant("surface_polygons_turned", "polygons in cells have what is inside behind their fronts", [
-        ("core/surface/cell_polygons.cpp", "return outward * turn < 0;", "return outward * turn > 0;")]),
+        ("core/contour/cell_polygons.cpp", "return outward * turn < 0;", "return outward * turn > 0;")]),
     Mutant("surface_polygons_open", "a point is left out where neither cell needs it", [
-        ("core/surface/contour_parts.h", "edges[n] | (above[n] & below[n])",
+        ("core/contour/contour_parts.h", "edges[n] | (above[n] & below[n])",
          "edges[n] | above[n] | below[n]")]),
     Mutant("surface_polygons_without_corners", "polygons in cells meet in corners of the mesh", [
-        ("core/surface/cell_polygons.cpp", "has_apex_ = ends.one.has_value();", "has_apex_ = false;")]),
+        ("core/contour/cell_polygons.cpp", "has_apex_ = ends.one.has_value();", "has_apex_ = false;")]),
     Mutant("surface_places_on_border", "a vertex on the border of its edge, face or cell is out of place", [
-        ("core/surface/vertex_places.cpp", "!(last - here >= margin_ / 2)", "!(last - here >= 0.0)")]),
+        ("core/contour/vertex_places.cpp", "!(last - here >= margin_ / 2)", "!(last - here >= 0.0)")]),
     Mutant("surface_places_off_faces", "a vertex beside its edge or face is out of place", [
-        ("core/surface/vertex_places.cpp", "<= margin_ / 16)", "<= 1.0)")]),
+        ("core/contour/vertex_places.cpp", "<= margin_ / 16)", "<= 1.0)")]),
     Mutant("surface_creases_cut_off", "a sharp edge is followed up to where it leaves the cells", [
-        ("core/surface/contour.cpp", "if (!on_crease && face_points == 1)", "if (!on_crease && face_points == 9)")]),
+        ("core/contour/contour.cpp", "if (!on_crease && face_points == 1)", "if (!on_crease && face_points == 9)")]),
     Mutant("surface_corners_cut_off", "an apex lies on a corner of the mesh", [
-        ("core/surface/cell_creases.cpp", "is_within(from_first, margin)) nearest.add", "is_within(from_first, 9.0 + margin)) nearest.add")]),
+        ("core/cells/cell_creases.cpp", "is_within(from_first, margin)) nearest.add", "is_within(from_first, 9.0 + margin)) nearest.add")]),
     Mutant("surface_planes_only", "a face point lies on a sharp edge even where planes do not meet there", [
-        ("core/surface/face_points.cpp", "return meeting ? meeting : crease_point(*edges, creases, margin);", "return meeting;")]),
+        ("core/contour/face_points.cpp", "return meeting ? meeting : crease_point(*edges, creases, margin);", "return meeting;")]),
     Mutant("surface_sections_turned", "both sides of a face have its points in one order", [
-        ("core/surface/contour.cpp", "(last < next ? n : count - 1 - n)", "n")]),
+        ("core/contour/contour.cpp", "(last < next ? n : count - 1 - n)", "n")]),
     Mutant("surface_sections_by_triangles", "flat parts of several triangles are one piece of a section", [
-        ("core/surface/cell_creases.cpp", "    if (bits == 0) parts.join(first.face, last.face);\n", "")]),
+        ("core/cells/cell_creases.cpp", "    if (bits == 0) parts.join(first.face, last.face);\n", "")]),
     Mutant("surface_sections_of_cones", "faces have several points only where polygons are", [
-        ("core/surface/face_points.cpp", "return cells_of_polygons[cell] != 0;", "return cells_of_polygons[cell] < 9;")]),
+        ("core/contour/face_points.cpp", "return cells_of_polygons[cell] != 0;", "return cells_of_polygons[cell] < 9;")]),
     Mutant("nodes_counted_once", "nodes that a mesh went around twice have not changed sides", [
-        ("core/surface/certificate.cpp", "Rule{RuleKind::kOdd}, lattice)", "Rule{RuleKind::kNonzero}, lattice)")]),
+        ("core/certificate/certificate.cpp", "Rule{RuleKind::kOdd}, lattice)", "Rule{RuleKind::kNonzero}, lattice)")]),
     Mutant("rows_of_a_change", "nodes are looked for in all rows that a change may pass", [
-        ("core/surface/certificate.cpp", "lattice.cell_at(axis, box.upper[axis]) + 2", "lattice.cell_at(axis, box.upper[axis]) - 1")]),
+        ("core/certificate/certificate.cpp", "lattice.cell_at(axis, box.upper[axis]) + 2", "lattice.cell_at(axis, box.upper[axis]) - 1")]),
     Mutant("faults_that_stay", "faces that intersected others are looked at again", [
-        ("core/surface/repeated_check.cpp", "again[now] = same && faulty_[before];", "again[now] = false;")]),
+        ("core/merging/repeated_check.cpp", "again[now] = same && faulty_[before];", "again[now] = false;")]),
     Mutant("faces_beside_gone_ones", "faces at corners of those that have changed are looked at", [
-        ("core/surface/repeated_check.cpp", "if (was_there && !same) touch(triangles_[before]);", ""),
-        ("core/surface/repeated_check.cpp", "if (!same) touch(merged.triangles[now]);", "")]),
+        ("core/merging/repeated_check.cpp", "if (was_there && !same) touch(triangles_[before]);", ""),
+        ("core/merging/repeated_check.cpp", "if (!same) touch(merged.triangles[now]);", "")]),
     Mutant("surface_pulled_off_planes", "merging keeps vertices in the planes of all faces around", [
-        ("core/surface/patch_merger.cpp", "return planes_[plane].distance(p) <= limits_.most;",
+        ("core/merging/patch_merger.cpp", "return planes_[plane].distance(p) <= limits_.most;",
          "return planes_[plane].distance(p) <= 1e9 * limits_.most;")]),
     Mutant("bricks_own_borders", "vertices that have faces in two bricks are neither's", [
-        ("core/surface/surface_bricks.cpp", "if (!is_own) of_corner.store(SurfaceBricks::kNone, std::memory_order_relaxed);", "(void)is_own;")]),
+        ("core/merging/surface_bricks.cpp", "if (!is_own) of_corner.store(SurfaceBricks::kNone, std::memory_order_relaxed);", "(void)is_own;")]),
     Mutant("settled_at_borders", "what a brick may not be pulled into, another may", [
-        ("core/surface/patch_merger.cpp", "    if (roles_[target] == VertexRole::kForeign) {\n      by_geometry = false;\n",
+        ("core/merging/patch_merger.cpp", "    if (roles_[target] == VertexRole::kForeign) {\n      by_geometry = false;\n",
          "    if (roles_[target] == VertexRole::kForeign) {\n")]),
     Mutant("far_faces_keep_sources", "simplified faces that reach into a hole are of no triangle", [
         ("core/surface/face_sources.cpp", "return distances[corner] > most;", "return distances[corner] > 1e9 * most;")]),
@@ -594,7 +594,7 @@ MUTANTS = [
         ("core/surface/surface_measures.cpp", "from_source + near_rounding < distances[n] ? from_source : distances[n]",
          "distances[n]")]),
     Mutant("corner_to_the_last_vertex", "of several corners near one vertex the nearest has it", [
-        ("core/surface/mesh_corners.cpp", "return std::pair(move.vertex, move.square);",
+        ("core/merging/mesh_corners.cpp", "return std::pair(move.vertex, move.square);",
          "return std::pair(move.vertex, -move.square);")]),
     Mutant("groups_by_cut_names", "names that begin alike are names of several groups", [
         ("io/mesh/face_groups.cpp", "return groups_.names[entry.second] == text && missing_[entry.second] == missing;",
@@ -614,39 +614,39 @@ MUTANTS = [
     Mutant("apart_by_one_corner", "a line tells triangles apart where all that is not shared is beyond it", [
         ("core/intersections/triangle_pair.cpp", "if (std::all_of(t.begin()", "if (std::any_of(t.begin()")]),
     Mutant("merged_or_not_at_all", "around nodes on the wrong side nothing is merged, elsewhere all", [
-        ("core/surface/kept_vertices.cpp", "has_misplaced && is_beside(", "has_misplaced && 0 > 1 && is_beside(")]),
+        ("core/merging/kept_vertices.cpp", "has_misplaced && is_beside(", "has_misplaced && 0 > 1 && is_beside(")]),
     Mutant("points_beside_corners", "faces between corners of the mesh are in its planes exactly", [
-        ("core/surface/mesh_corners.cpp", "if (move.vertex != last) vertices[move.vertex] = move.to;", "")]),
+        ("core/merging/mesh_corners.cpp", "if (move.vertex != last) vertices[move.vertex] = move.to;", "")]),
     Mutant("points_beside_level_planes", "points of faces in level planes are in these exactly", [
-        ("core/surface/mesh_corners.cpp", "if (std::abs(here - a[axis]) <= reach) here = a[axis];", "")]),
+        ("core/merging/mesh_corners.cpp", "if (std::abs(here - a[axis]) <= reach) here = a[axis];", "")]),
     Mutant("once_around_twice", "a polygon that ends where it starts has that corner once", [
-        ("core/surface/cell_polygons.cpp", "last.corners[last.size - 1]) --last.size;", "last.corners[last.size - 1]) last.size += 0;")]),
+        ("core/contour/cell_polygons.cpp", "last.corners[last.size - 1]) --last.size;", "last.corners[last.size - 1]) last.size += 0;")]),
     Mutant("beside_nodes_unseen", "points of the lattice's edges are on the surface of one that is moved", [
         ("core/surface/surface_beside_nodes.cpp", "return std::ranges::max(distances) <= off;", "return std::ranges::max(distances) >= 0.0;")]),
     Mutant("blades_are_eaten", "a ridge is held where planes meet at less than 30 degrees", [
-        ("core/surface/patch_merger.cpp", "kBackToBack = -0.866;", "kBackToBack = -1 + 0x1p-21;")]),
+        ("core/merging/patch_merger.cpp", "kBackToBack = -0.866;", "kBackToBack = -1 + 0x1p-21;")]),
     Mutant("hits_by_rounding", "where a segment is nearly in a plane, the place where it meets that is exact", [
-        ("core/surface/edge_crossing.cpp", "kSure = 0x1p-10;", "kSure = 0;")]),
+        ("core/cells/edge_crossing.cpp", "kSure = 0x1p-10;", "kSure = 0;")]),
     Mutant("sectors_end_anywhere", "a line between sectors leads to the nearest corner of the loop on it", [
-        ("core/surface/fill_gap.cpp", "ends.push_back(nearest_end(run.first, corner));",
+        ("core/sharpening/fill_gap.cpp", "ends.push_back(nearest_end(run.first, corner));",
          "ends.push_back(0 * nearest_end(run.first, corner) + run.first + count);")]),
     Mutant("corners_without_rings", "faces that reach beyond a corner are part of the gap there", [
-        ("core/surface/corner_gaps.cpp", "is_off(face) || std::ranges::any_of(", "is_off(face) && std::ranges::any_of(")]),
+        ("core/sharpening/corner_gaps.cpp", "is_off(face) || std::ranges::any_of(", "is_off(face) && std::ranges::any_of(")]),
     Mutant("planes_from_either_side", "a plane that has faces on both sides is two", [
-        ("core/surface/fill_gap.cpp", "return dot(label.plane.normal, plane.normal) > 0.0 &&",
+        ("core/sharpening/fill_gap.cpp", "return dot(label.plane.normal, plane.normal) > 0.0 &&",
          "return dot(label.plane.normal, plane.normal) != 0.0 &&")]),
     Mutant("faulty_fills_come_again", "where a fill has faults, the next one is tried", [
-        ("core/surface/corner_gaps.cpp", "++passed_over[numbers[n]];", "passed_over[numbers[n]] += 0;")]),
+        ("core/sharpening/corner_gaps.cpp", "++passed_over[numbers[n]];", "passed_over[numbers[n]] += 0;")]),
     Mutant("bubbles_in_solids", "what is within a solid, or inside out beside it, is no part of its border", [
-        ("core/surface/border_components.cpp", "is_border[n] = !holds(rule, front) && holds(rule, behind);",
+        ("core/certificate/border_components.cpp", "is_border[n] = !holds(rule, front) && holds(rule, behind);",
          "is_border[n] = true;")]),
     Mutant("meshes_unrounded", "a mesh that is kept is rounded to single precision, too", [
-        ("core/surface/mesh_border.cpp", "  if (options.single_precision) round_to_float(itself.mesh.vertices);\n",
+        ("core/filling/mesh_border.cpp", "  if (options.single_precision) round_to_float(itself.mesh.vertices);\n",
          "")]),
     Mutant("unseen_components_kept", "each component must be in a cell with nodes of both kinds", [
-        ("core/surface/seen_by_nodes.cpp", "if (!mixed.are_met_by(component, vertices)) return Sight::kUnseen;", "")]),
+        ("core/filling/seen_by_nodes.cpp", "if (!mixed.are_met_by(component, vertices)) return Sight::kUnseen;", "")]),
     Mutant("far_parts_kept", "no part of a mesh may be far from nodes of both kinds", [
-        ("core/surface/seen_by_nodes.cpp", "!mixed.are_near_to(t, vertices); }) ? Sight::kInPart", "!mixed.are_near_to(t, vertices); }) ? Sight::kWhole")]),
+        ("core/filling/seen_by_nodes.cpp", "!mixed.are_near_to(t, vertices); }) ? Sight::kInPart", "!mixed.are_near_to(t, vertices); }) ? Sight::kWhole")]),
     Mutant("faces_cut_apart_once", "edges of faces cross each other in a plane, too", [
         ("core/arrangement/plane_arrangement.cpp", "if (cross(boxes_[n].segment, boxes_[m].segment)) found", "if (n > m) found")]),
     Mutant("multiplicity_forgotten", "two faces that lie on each other change winding numbers by two", [
@@ -665,12 +665,12 @@ MUTANTS = [
     Mutant("fans_leave_planes", "fans move along one axis where that is enough", [
         ("core/arrangement/fan_parting.cpp", "if (does) return way;", "if (does && axis > 2) return way;")]),
     Mutant("faults_stay", "where parts that were taken apart have faults, they go another way", [
-        ("core/surface/embedded_border.cpp", "++in_vain[v];", "")]),
+        ("core/filling/embedded_border.cpp", "++in_vain[v];", "")]),
     Mutant("copies_are_themselves", "vertices of parts are known as copies", [
         ("core/arrangement/take_apart.cpp", "add_vertex(at, vertex)",
          "add_vertex(at, static_cast<std::uint32_t>(border_.vertices.size()))")]),
     Mutant("places_cancel", "places next to a plane are right", [
-        ("core/surface/edge_crossing.cpp", "constexpr double kWideSure = 0x1p-58;", "constexpr double kWideSure = 0.0;")]),
+        ("core/cells/edge_crossing.cpp", "constexpr double kWideSure = 0x1p-58;", "constexpr double kWideSure = 0.0;")]),
     Mutant("needles_cancel", "gradients next to the lines of sides are those of exact differences", [
         ("core/exact/direct_gradient.cpp", "kCancels = 0x1p-60;", "kCancels = 0.0;")]),
     Mutant("far_sides_are_lost", "gradients from far away are those of the definition", [
@@ -688,37 +688,37 @@ MUTANTS = [
     Mutant("edges_moved_at_one_end", "of two parts the same one moves along all of an edge", [
         ("core/arrangement/fan_cone.cpp", "sum += dot(across, way)", "sum -= 0.0 * dot(across, way)")]),
     Mutant("caps_as_they_are", "faces of caps are divided until they are along the threshold", [
-        ("core/surface/fit_to_threshold.cpp", "if (bent.empty()) return true;", "if (bent.empty() || true) return true;")]),
+        ("core/filling/fit_to_threshold.cpp", "if (bent.empty()) return true;", "if (bent.empty() || true) return true;")]),
     Mutant("beside_the_threshold", "new vertices are where w is the threshold", [
-        ("core/surface/line_roots.cpp", "if (!bracket.at_jump) return bracket.root;", "if (!bracket.at_jump) return 1.001 * bracket.root;")]),
+        ("core/cells/line_roots.cpp", "if (!bracket.at_jump) return bracket.root;", "if (!bracket.at_jump) return 1.001 * bracket.root;")]),
     Mutant("jumps_of_half_a_turn", "rules that fold w jump by less", [
-        ("core/surface/edge_roots.cpp", "kJump = 0x1p-8;", "kJump = 0x1p-1;")]),
+        ("core/cells/edge_roots.cpp", "kJump = 0x1p-8;", "kJump = 0x1p-1;")]),
     Mutant("roots_are_jumps", "where values reach 0 they do not jump, however far the other end is", [
-        ("core/surface/edge_roots.cpp", "at_jump = !is_met_ && std::abs", "at_jump = std::abs")]),
+        ("core/cells/edge_roots.cpp", "at_jump = !is_met_ && std::abs", "at_jump = std::abs")]),
     Mutant("fills_on_faces", "no vertex of a fill is on a face of the mesh", [
-        ("core/surface/line_roots.cpp", "std::min(behind / length,", "std::min(0.0 * behind / length,")]),
+        ("core/cells/line_roots.cpp", "std::min(behind / length,", "std::min(0.0 * behind / length,")]),
     Mutant("nodes_of_holes_unseen", "nodes next to what closes a hole are on their sides", [
-        ("core/surface/fit_to_threshold.cpp", "fits = misplaced.empty();", "fits = true;")]),
+        ("core/filling/fit_to_threshold.cpp", "fits = misplaced.empty();", "fits = true;")]),
     Mutant("other_evaluators_in_scale", "scaled meshes have evaluators with the same accuracies", [
         ("core/surface/surface_in_scale.cpp", "evaluator.asked_accuracy()", "(void(evaluator), Accuracy{})")]),
     Mutant("islands_inside_out", "the part that a node gets has the node on its side", [
-        ("core/surface/fit_to_threshold.cpp", "fill_.add_octahedron(tips, nodes[n].is_inside);", "fill_.add_octahedron(tips, !nodes[n].is_inside);")]),
+        ("core/filling/fit_to_threshold.cpp", "fill_.add_octahedron(tips, nodes[n].is_inside);", "fill_.add_octahedron(tips, !nodes[n].is_inside);")]),
     Mutant("sheets_are_thick", "what ends within half a voxel behind a sheet is too thin", [
-        ("core/surface/fill_check.cpp", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.5;", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.001;")]),
+        ("core/filling/fill_check.cpp", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.5;", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.001;")]),
     Mutant("any_filling", "what closes holes must be near to the threshold", [
-        ("core/surface/fill_check.cpp", "constexpr double kLittle = 1.0,", "constexpr double kLittle = 1e9,")]),
+        ("core/filling/fill_check.cpp", "constexpr double kLittle = 1.0,", "constexpr double kLittle = 1e9,")]),
     Mutant("edges_come_twice", "an edge that is there already is not made by a flip", [
-        ("core/surface/fill_faces.cpp", "std::max(one, other)}).second) return false;", "std::max(one, other)}).second && false) return false;")]),
+        ("core/filling/fill_faces.cpp", "std::max(one, other)}).second) return false;", "std::max(one, other)}).second && false) return false;")]),
     Mutant("rounded_as_exact", "turns that doubles are not sure of are decided exactly", [
         ("core/exact/exact_points.cpp", "const double trust = 0x1p-48 * most * (sides + 0x1p-48 * most) + 0x1p-1000;", "const double trust = 0.0 * most * sides;")]),
     Mutant("inner_walls_are_thin_parts", "what separates nothing is not too thin for the lattice", [
         ("core/surface/surface_measures.cpp", "holds[2 * i] != holds[2 * i + 1]", "true")]),
     Mutant("simplify_forgets", "distances that a face moved by add up", [
-        ("core/surface/simplify.cpp", "off_[face] = by.off;", "off_[face] = 0.0;")]),
+        ("core/merging/simplify.cpp", "off_[face] = by.off;", "off_[face] = 0.0;")]),
     Mutant("simplify_at_vertex_only", "faces before and after differ most where edges cross, too", [
-        ("core/surface/star_change.cpp", "if (j == i || j == target_) continue;", "if (j == i || j == target_ || j < 99) continue;")]),
+        ("core/merging/star_change.cpp", "if (j == i || j == target_) continue;", "if (j == i || j == target_ || j < 99) continue;")]),
     Mutant("simplify_over_nodes", "no node lies between faces before and after", [
-        ("core/surface/star_change.cpp", "if (!before || !after) return false;", "return false;")]),
+        ("core/merging/star_change.cpp", "if (!before || !after) return false;", "return false;")]),
     Mutant("nearest_is_any_of_several", "of triangles that are equally near, the first is the nearest", [
         ("core/distance/distance_tree.cpp", "first = std::min(first, triangles_[", "first = (triangles_[")]),
 
@@ -796,22 +796,22 @@ MUTANTS = [
     Mutant("point_values_not_settled", "a value of blocks of points that may be a half-integer is evaluated again", [
         ("core/evaluation/scaled_mesh.cpp", "values, choice_.doubt_of_blocks());", "values, -1.0);")]),
     Mutant("rims_are_pulled", "the rim of a fin, and the border of a hole, stay where planes do not hold them", [
-        ("core/surface/patch_merger.cpp", "if (rim.empty()) return true;", "return true;")]),
+        ("core/merging/patch_merger.cpp", "if (rim.empty()) return true;", "return true;")]),
     Mutant("sharpened_off_the_mesh", "strips are pulled together only where the mesh has an edge", [
-        ("core/surface/fill_gap.cpp", "return d <= off;",
+        ("core/sharpening/fill_gap.cpp", "return d <= off;",
          "return d <= 1e9 * off;")]),
     Mutant("gaps_from_the_shortest_run_on", "where one way to fill a gap leads nowhere, another one is tried", [
-        ("core/surface/fill_gap.cpp", "if (++tries_ > kMostTries) return false;", "if (++tries_ > 1) return false;")]),
+        ("core/sharpening/fill_gap.cpp", "if (++tries_ > kMostTries) return false;", "if (++tries_ > 1) return false;")]),
     Mutant("faults_among_changed_faces_only", "faults are looked for between changed faces and all others", [
-        ("core/surface/certificate.cpp", "cells.meets(range_of(mesh.triangles[face]))",
+        ("core/certificate/certificate.cpp", "cells.meets(range_of(mesh.triangles[face]))",
          "std::ranges::find(change.faces, face) != change.faces.end()")]),
     Mutant("pulls_add_up", "merging stays near all points that are gone", [
-        ("core/surface/checked_merge.cpp", "if (behind.empty())", "if (!behind.empty() || behind.empty())")]),
+        ("core/merging/checked_merge.cpp", "if (behind.empty())", "if (!behind.empty() || behind.empty())")]),
     Mutant("third_powers_underflow", "sources so near that powers of distances underflow have no bound", [
         ("core/boundary/change_kernel.cpp", "constexpr double kLeastSquare = 0x1p-660;",
          "constexpr double kLeastSquare = 0x1p-900;")]),
     Mutant("bricks_not_merged_again", "bricks in which something else is kept are merged again", [
-        ("core/surface/merge_planes.cpp", "if (kept[v] != kept_[v]) changed.push_back(v);",
+        ("core/merging/merge_planes.cpp", "if (kept[v] != kept_[v]) changed.push_back(v);",
          "if (kept[v] != kept_[v] && v % 2 == 0) changed.push_back(v);")]),
     Mutant("sources_of_parallel_planes", "a face that is far from its source's plane gets another source", [
         ("core/surface/face_sources.cpp", "*corner - point)) <= off_)", "*corner - point)) <= 1e9 * off_)")]),

@@ -1,0 +1,33 @@
+// The points of a surface on the edges of a lattice.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/cells/cell_triangles.h"
+#include "core/cells/edge_roots.h"
+#include "core/cells/surface_cells.h"
+#include "core/cells/surface_mesh.h"
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+struct EdgePoint {
+  Vec3 position;
+  std::int32_t source = kHole;  // the triangle that the edge leaves the inside by
+};
+
+// How far points stay away from where they may not be, as fractions of an edge, or of barycentric coordinates of a
+// face or a cell.
+struct SurfaceMargins {
+  double inner = 0x1p-30;
+};
+
+// For each mixed edge the point nearest to its inside end where the rule ceases to hold: on the first triangle that
+// carries the winding number across, or where it passes a threshold by itself, as it does in holes. Positions are moved
+// by no more than the margin. The same for any number of threads. Needs rule, cells and triangles of this mesh.
+[[nodiscard]] std::vector<EdgePoint> edge_points(const TriangleMesh& mesh, const RuleAlong& rule,
+                                                 const SurfaceCells& cells, const CellTriangles& triangles,
+                                                 const SurfaceMargins& margins);
+
+}  // namespace raycone

@@ -1,0 +1,25 @@
+// What is known of a surface before it has faces: in the cells of a lattice, one by one.
+#pragma once
+
+#include <span>
+
+#include "core/cells/cell_creases.h"
+#include "core/cells/edge_points.h"
+#include "core/cells/surface_cells.h"
+
+namespace raycone {
+
+// Refers to cells, points and creases, which must outlive it.
+struct SurfaceInCells {
+  const SurfaceCells& cells;
+  std::span<const EdgePoint> edge_points;
+  const CellCreases& creases;
+  double tolerance;  // plane_tolerance(), world units
+  SurfaceMargins margins;
+
+  // The margin where edges are short, and where they are long, world units.
+  [[nodiscard]] double least_margin() const { return margins.inner * cells.lattice().least_spacing(); }
+  [[nodiscard]] double largest_margin() const { return margins.inner * cells.lattice().largest_spacing(); }
+};
+
+}  // namespace raycone

@@ -1,0 +1,101 @@
+// The points where sharp edges pass through the faces of a lattice's tetrahedra.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/cells/cell_creases.h"
+#include "core/cells/edge_points.h"
+#include "core/cells/surface_cells.h"
+#include "core/cells/surface_in_cells.h"
+#include "core/data/triangle_mesh.h"
+
+namespace raycone {
+
+// A face of a cell, as in kuhn::kFaces, in one number, which increases with the cell and then with the face.
+inline constexpr std::uint64_t kFacesPerCell = 16;  // a power of two, more than a cell has
+[[nodiscard]] constexpr std::uint64_t number_of_face(std::uint32_t cell, std::size_t face) {
+  return kFacesPerCell * cell + face;
+}
+[[nodiscard]] constexpr std::uint32_t cell_of_face(std::uint64_t number) {
+  return static_cast<std::uint32_t>(number / kFacesPerCell);
+}
+[[nodiscard]] constexpr std::size_t face_in_cell(std::uint64_t number) { return number % kFacesPerCell; }
+
+// The cells at a face with nodes of both kinds: it is between two, or within one, which comes twice then.
+[[nodiscard]] std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint32_t cell,
+                                                         std::size_t face);
+
+enum class PointsOfFaces : std::uint8_t {
+  kOne,       // of all faces
+  kSections,  // of faces between cells, not of those within one
+};
+
+// Where the planes at a mixed face's two points disagree, or just one of these is in a hole: a point of a crease in the
+// face, if there is one; that where the planes meet, else the one farthest from the straight line.
+[[nodiscard]] std::optional<Vec3> face_point(const SurfaceInCells& surface, std::uint32_t cell, std::size_t face,
+                                             CreasesHere& creases);
+
+class FacePoints {
+ public:
+  // What face_point() finds. With sections, where planes do not meet: all points by which the mesh leads from the one
+  // to the other, if these are several, and go ahead all the way; and where planes meet on fine creases, or are one but
+  // for what single precision rounds, points of these. Points are kept inside the face by the margin. They depend on
+  // the face, its two points and the mesh alone, so that both its cells agree.
+  explicit FacePoints(const SurfaceInCells& surface, PointsOfFaces kind = PointsOfFaces::kOne);
+  FacePoints() = default;
+  // These points, of faces with these numbers, each once, increasing.
+  FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions);
+
+  [[nodiscard]] PointsOfFaces kind() const { return kind_; }
+  // The face of each point.
+  [[nodiscard]] const std::vector<std::uint64_t>& faces() const { return faces_; }
+  [[nodiscard]] const std::vector<Vec3>& positions() const { return positions_; }
+
+  // Points whose numbers follow each other.
+  struct Range {
+    std::uint32_t first = 0, count = 0;
+  };
+  // Those of a face of the cell, as in kuhn::kFaces, in order: from the point of the edge that is less by the numbers
+  // of its corners, lower one first, to that of the other. Thread-safe.
+  [[nodiscard]] Range find(std::uint32_t cell, std::size_t face) const;
+  // What the surface is of between a point and the next one, of the same face.
+  [[nodiscard]] const EdgePoint& piece_behind(std::uint32_t point) const;
+
+  // The faces with points that face_point() does not find, in increasing order.
+  [[nodiscard]] const std::vector<std::uint64_t>& section_faces() const { return sections_; }
+  // Leaves these only where that pays: where one of the face's cells is in `cells_of_polygons`, which has a 1
+  // for each such cell. The others have the one that face_point() finds.
+  void keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceInCells& surface);
+
+  // All but those of faces that have one of these numbers.
+  [[nodiscard]] FacePoints without(const std::vector<bool>& dropped) const;
+
+ private:
+  struct Piece {
+    std::uint32_t point;
+    EdgePoint plane;
+  };
+  void add(std::uint64_t face, const Vec3& position) {
+    faces_.push_back(face);
+    positions_.push_back(position);
+  }
+  void add_section(const SurfaceInCells& surface, std::uint32_t cell, std::size_t face, CreasesHere& creases);
+  // The points of one face: `begin` to `end` of others.
+  void add_face(const FacePoints& of, std::size_t begin, std::size_t end);
+  [[nodiscard]] std::size_t end_of_face(std::size_t point) const;
+  void join(std::vector<FacePoints>& parts);
+  void number_cells();
+
+  PointsOfFaces kind_ = PointsOfFaces::kOne;
+  std::vector<std::uint64_t> faces_;  // number_of_face() of each point; those of a face follow each other
+  std::vector<Vec3> positions_;
+  std::vector<std::uint64_t> sections_;
+  std::vector<Piece> pieces_;                 // of the points that are not the last ones of their faces, increasing
+  std::vector<std::uint32_t> first_of_cell_;  // up to the last cell that has any; one more at the end
+  std::vector<std::uint16_t> faces_of_cell_;  // likewise, a bit for each
+};
+
+}  // namespace raycone

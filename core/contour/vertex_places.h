@@ -1,0 +1,28 @@
+// Whether the vertices of a contour lie where the proof of docs/method.md, "Surfaces", needs them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "core/cells/edge_points.h"
+#include "core/cells/surface_cells.h"
+#include "core/contour/face_points.h"
+#include "core/data/vec3.h"
+
+namespace raycone {
+
+// What contour() is made of, and makes, whether triangles have it or not.
+struct ContourPoints {
+  std::span<const EdgePoint> edges;
+  std::span<const Vec3> faces, apexes;
+  bool single_precision = false;  // they become vertices that are rounded to float
+};
+
+// How many of these, before any merging, are not strictly inside of their edge, face or tetrahedron: less than half the
+// margin from its border, or farther off it than a sixteenth of the margin. `face_points` says which faces the points
+// are of; `tetrahedra`: ContouredSurface::tetrahedra. The same for any number of threads.
+[[nodiscard]] std::uint64_t misplaced_vertices(const ContourPoints& points, const SurfaceCells& cells,
+                                               const FacePoints& face_points, std::span<const std::uint64_t> tetrahedra,
+                                               const SurfaceMargins& margins);
+
+}  // namespace raycone

@@ -1,0 +1,39 @@
+// The border of what is inside an open mesh by a rule, as faces of its own and others that close its holes.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "core/cells/edge_roots.h"
+#include "core/cells/node_set.h"
+#include "core/cells/surface_mesh.h"
+#include "core/data/triangle_mesh.h"
+#include "core/mesh/exterior_edges.h"
+#include "core/surface/surface.h"
+
+namespace raycone {
+
+// How many triangles there may be.
+struct BorderLimits {
+  std::size_t cut;   // of a mesh whose border has to be cut out
+  std::size_t fill;  // without source, before that
+};
+
+struct FilledBorder {
+  SurfaceMesh surface;           // closed, 2-manifold and free of self-intersections, once around what is inside
+  double left_out_of_all = 0.0;  // area of parts too thin for the lattice, as a part of the mesh's
+};
+
+// Closes the mesh by caps, takes the border of that (mesh_border()), fits what caps left to the threshold
+// (fit_to_threshold()), and takes the border again. None where one of these is not to be had, the mesh is mostly
+// boundary (more than 64 borders, with more than a thousand caps and a quarter as many as triangles), more than an
+// eighth of the nodes are elsewhere at first, or the result is not near the threshold, or has lost what separates
+// (fill_check). The same for any number of threads. Preconditions: as of closed_surface(); `edges` are the exterior
+// edges of the mesh. Needs DefaultFloatingPoint.
+[[nodiscard]] std::optional<FilledBorder> filled_border(const TriangleMesh& mesh,
+                                                        const std::vector<ExteriorEdge>& edges,
+                                                        const FineAndRough& evaluators, const NodeSet& inside,
+                                                        const SurfaceOptions& options, const BorderLimits& limits);
+
+}  // namespace raycone

@@ -1,0 +1,176 @@
+#include "core/merging/checked_merge.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "core/cells/source_plane.h"
+#include "core/cells/surface_mesh.h"
+#include "core/certificate/certificate.h"
+#include "core/data/single_precision.h"
+#include "core/merging/kept_vertices.h"
+#include "core/merging/left_behind.h"
+#include "core/merging/merge_planes.h"
+#include "core/merging/mesh_corners.h"
+#include "core/merging/repeated_check.h"
+#include "core/mesh/used_part.h"
+
+namespace raycone {
+namespace {
+
+class CheckedMerger {
+ public:
+  CheckedMerger(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside,
+                const MergeOptions& options, const std::function<bool()>& is_right)
+      : surface_(surface),
+        input_(input),
+        inside_(inside),
+        options_(options),
+        unit_(options.margin * inside.lattice().least_spacing()),
+        is_right_(is_right),
+        kept_(surface) {}
+
+  // Points of one plane are as far apart across it as the input's coordinates are rounded, and up to two margins where
+  // they are kept off nodes. If faces that are merged as well as that have faults, they are merged where they agree
+  // better. None where faults are left even so.
+  CheckedMerge merge() {
+    constexpr double kBetter = 0.25;   // margins: less than any point is kept off a node
+    constexpr double kManyMore = 1.5;  // times the faces: below, another surface would not be worth its time
+    std::optional<SurfaceMesh> result;
+    if (options_.tolerance > kNearPlane * unit_) result = merged_within(options_.tolerance, Effort::kLeast);
+    if (!result) result = merged_within(kNearPlane * unit_, Effort::kLittle);
+    if (!result && !is_wrong_ && !options_.once) result = merged_within(kBetter * unit_, Effort::kAll);
+    const bool is_costly = !result || static_cast<double>(result->mesh.triangles.size()) > kManyMore * faces_of_all_;
+    return {std::move(result), is_costly && cuts_nodes_off_};
+  }
+
+ private:
+  // Only kLeast goes on without asking whether the surface before is right, which takes longer than merging. kAll goes
+  // on with more than a few nodes on the wrong side, as where a plane of the mesh is one of the lattice, to the last
+  // resort.
+  enum class Effort : std::uint8_t { kLeast, kLittle, kAll };
+
+  // What merging spoils is not merged. `most`: world units.
+  std::optional<SurfaceMesh> merged_within(double most, Effort effort) {
+    const std::vector<Vec3>& vertices = surface_.mesh.vertices;
+    const std::uint64_t few_nodes = std::max<std::size_t>(64, vertices.size() / 256);
+    kept_ = KeptVertices(surface_);
+    PlaneMerger merger(surface_, input_, inside_.lattice(), {most, kNearCorner * unit_});
+    RepeatedCheck check(inside_, vertices.size());
+    if (!is_right_) check.remember_whole(surface_);
+    std::uint64_t faults_before = 0;
+    NodeSet misplaced(inside_.lattice());
+    moves_ = PointMoves::kNone;
+    constexpr int kMostDrifts = 32;  // a bend of 62 tolerances takes one
+    int drifts = 0;
+    const int rounds = KeptVertices::kRounds + (effort == Effort::kAll ? KeptVertices::kWideRounds : 0);
+    const auto may_go_on = [&] { return effort == Effort::kLeast || is_right(); };
+    for (int round = 0; round < rounds; ++round) {
+      MergedFaces merged = merger.merge(kept_.kept());
+      TriangleMesh compact = used_part(vertices, merged.triangles);
+      apply_moves(merged, compact);
+      SurfaceFaults faults = check.faults(merged, compact, misplaced);
+      if (!faults.none()) check.remember(merged, compact, faults);
+      if (round == 0 && faults.nodes > 0) find_moves(merged, check, compact, faults, misplaced);
+      if (round == 0) {
+        cuts_nodes_off_ = cuts_nodes_off_ || faults.nodes > 0;
+        faces_of_all_ = std::max(faces_of_all_, static_cast<double>(compact.triangles.size()));
+      }
+      if (faults.none()) {
+        const std::vector<std::uint32_t> behind = left_behind(surface_, merged, compact, most_apart(most, compact));
+        if (behind.empty()) return SurfaceMesh{std::move(compact), std::move(merged.sources)};
+        if (++drifts > kMostDrifts) return std::nullopt;
+        kept_.keep(behind);
+        --round;  // nothing is at fault
+        continue;
+      }
+      if (faults.nodes > few_nodes && effort != Effort::kAll) return std::nullopt;
+      const std::uint64_t count = count_of(faults);
+      const bool no_better = round > 0 && count >= faults_before;
+      if ((no_better || round == KeptVertices::kRounds) && !may_go_on()) return std::nullopt;
+      faults_before = count;
+      // With nothing more kept, the next round would find the same.
+      while (!kept_.keep_more({merged, compact, faults, misplaced}, round)) {
+        if (++round == rounds || !may_go_on()) return std::nullopt;
+      }
+    }
+    return std::nullopt;
+  }
+
+  // Where a plane of the mesh leads through nodes, its faces have them on the right side if they are in that plane
+  // exactly, as those between corners of the mesh are. Other points were kept off nodes, or are rounded. Takes the
+  // moves with the fewest faults that are undone, and none of others, from now on; sets all to what it is then.
+  void find_moves(const MergedFaces& merged, RepeatedCheck& check, TriangleMesh& mesh, SurfaceFaults& faults,
+                  NodeSet& misplaced) {
+    const TriangleMesh before = mesh;
+    PointMoves best = PointMoves::kNone;
+    for (const PointMoves moves : {PointMoves::kToCorners, PointMoves::kIntoLevelPlanes}) {
+      if (count_of(faults) == 0) break;
+      moves_ = moves;
+      TriangleMesh moved = before;
+      apply_moves(merged, moved);
+      NodeSet misplaced_then(inside_.lattice());
+      SurfaceFaults then = check.faults(merged, moved, misplaced_then);
+      const std::uint64_t others = then.edges + then.links + then.degenerate_faces + then.equal_vertices;
+      if (others > 0 || count_of(then) >= count_of(faults)) continue;
+      check.remember(merged, moved, then);
+      mesh = std::move(moved);
+      faults = std::move(then);
+      misplaced = std::move(misplaced_then);
+      best = moves;
+    }
+    moves_ = best;
+  }
+
+  // `mesh`: the faces of `merged`, in their order.
+  void apply_moves(const MergedFaces& merged, TriangleMesh& mesh) const {
+    if (moves_ == PointMoves::kNone) return;
+    move_points(moves_, input_, merged.sources, inside_.lattice(), kNearCorner * unit_, mesh);
+    if (options_.single_precision) round_to_float(mesh.vertices);
+    for (std::size_t face = 0; face < merged.triangles.size(); ++face) {
+      for (std::size_t n = 0; n < 3; ++n) {
+        const std::uint32_t v = merged.triangles[face][n];
+        if (kept_.at_home()[v]) mesh.vertices[mesh.triangles[face][n]] = surface_.mesh.vertices[v];
+      }
+    }
+  }
+
+  // Points at a node become one; what vanished may be off a plane on one side, what is left on the other.
+  [[nodiscard]] double most_apart(double most, const TriangleMesh& mesh) const {
+    constexpr double kRounding = 0x1p-47;  // of distances: 2^-51 of coordinates is what they are off by at most
+    return kNearCorner * unit_ + 2 * most + kRounding * largest_coordinate(bounding_box(mesh));
+  }
+
+  // Of those that are undone.
+  static std::uint64_t count_of(const SurfaceFaults& faults) { return faults.nodes + faults.intersections.pairs; }
+
+  bool is_right() {
+    is_wrong_ = is_right_ && !is_right_();
+    return !is_wrong_;
+  }
+
+  const SurfaceMesh& surface_;
+  const TriangleMesh& input_;
+  const NodeSet& inside_;
+  MergeOptions options_;
+  double unit_;  // the margin, world units
+  const std::function<bool()>& is_right_;
+  bool is_wrong_ = false;  // as far as is known
+  KeptVertices kept_;
+  PointMoves moves_ = PointMoves::kNone;
+  bool cuts_nodes_off_ = false;
+  double faces_of_all_ = 0.0;  // how many there are with all merged
+};
+
+}  // namespace
+
+CheckedMerge checked_merge(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside,
+                           const MergeOptions& options, const std::function<bool()>& is_right) {
+  return CheckedMerger(surface, input, inside, options, is_right).merge();
+}
+
+}  // namespace raycone

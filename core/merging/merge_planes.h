@@ -1,0 +1,62 @@
+// Fewer triangles for the same surface.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "core/cells/surface_mesh.h"
+#include "core/data/lattice.h"
+#include "core/data/triangle_mesh.h"
+#include "core/merging/patch_merger.h"
+
+namespace raycone {
+
+// Faces of a surface whose vertices are pulled into others. Numbers of vertices are those of before.
+struct MergedFaces {
+  std::vector<Triangle> triangles;
+  std::vector<std::int32_t> sources;
+  std::vector<std::uint32_t> into;   // of each vertex, what it was pulled into; itself, where it stayed
+  std::vector<std::uint32_t> faces;  // of merge_planes(): the numbers that its faces had before, increasing
+};
+
+class BrickMerger;
+struct SurfaceBricks;
+
+// The faces of a closed surface with vertices pulled into neighbours along edges, wherever all faces around stay in the
+// planes that they are in (`input`'s, where they have a source in it): flat parts get larger faces, straight edges
+// longer ones. Faces keep their order and sources. The same surface everywhere, topologically and within `limits.most`;
+// but where planes agree only up to rounding, faces that come as near to others may cross them. `lattice`: of about the
+// size of the faces. The same for any number of threads, and whatever was kept before.
+class PlaneMerger {
+ public:
+  // All of them must stay as they are.
+  PlaneMerger(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice, const MergeLimits& limits);
+
+  // Vertices of `kept` stay. Where few of them are others than in the last call, takes a fraction of its time.
+  [[nodiscard]] MergedFaces merge(const std::vector<bool>& kept);
+
+ private:
+  struct SecondPass;
+  void merge_first_bricks(const std::vector<bool>& kept);
+  void merge_second_bricks(const std::vector<bool>& kept, BrickMerger& merger, MergedFaces& merged,
+                           std::vector<std::uint8_t>& settled);
+
+  const SurfaceMesh& surface_;
+  const TriangleMesh& input_;
+  const Lattice& lattice_;
+  MergeLimits limits_;
+  // Of the last call, when each brick was merged by itself; nothing before the first one.
+  std::shared_ptr<const SurfaceBricks> bricks_;
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint32_t> into_;
+  std::vector<std::uint8_t> settled_;
+  std::vector<bool> kept_;
+  std::shared_ptr<SecondPass> second_;  // of the last call, likewise
+};
+
+// The same by a merger that is used once.
+[[nodiscard]] MergedFaces merge_planes(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice,
+                                       const std::vector<bool>& kept, const MergeLimits& limits);
+
+}  // namespace raycone

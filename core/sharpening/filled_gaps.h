@@ -1,0 +1,27 @@
+// Gaps of a surface, filled.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/cells/surface_mesh.h"
+#include "core/data/lattice.h"
+#include "core/sharpening/fill_gap.h"
+
+namespace raycone {
+
+// A gap, and what fills it.
+struct FilledGap {
+  std::vector<std::uint32_t> faces;  // of the surface, which vanish
+  std::vector<std::uint32_t> loop;   // vertices around them, as in the GapLoop
+  GapFill filled;
+};
+
+// Fills gaps of a closed surface, of which no two have a face in common. If that makes faults, the surface is as it
+// was: returns the numbers of the fills that are at these, all where that is not known. Only what is near a change is
+// looked at (faults_near(), changed_nodes()). The same for any number of threads. Needs DefaultFloatingPoint.
+[[nodiscard]] std::vector<std::size_t> fill_all(SurfaceMesh& surface, const std::vector<FilledGap>& fills,
+                                                const Lattice& lattice);
+
+}  // namespace raycone

@@ -1,0 +1,117 @@
+// Sharp edges where a lattice does not see them.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/cells/surface_mesh.h"
+#include "core/cells/triangle_normals.h"
+#include "core/certificate/surface_edit.h"
+#include "core/data/triangle_mesh.h"
+#include "core/distance/distance.h"
+#include "core/sharpening/face_placement.h"
+
+namespace raycone {
+
+struct SharpenLimits {
+  double off = 0.0;    // a face is in the plane of its source if its corners are not farther from it, world units
+  double reach = 0.0;  // how far a vertex is pulled at most, likewise
+  bool single_precision = false;  // vertices are rounded to float
+  std::uint64_t fewer = 0;        // faces in planes than there would be without polygons
+};
+
+// Where a sharp edge passes between outside nodes, contour() cuts it off: a strip of faces runs from a plane of the
+// mesh to another one, or to several at a corner, and lies in none of them. Each two neighbours on different sides of
+// such a strip become one vertex where their planes meet, if that is a point of the mesh. Faces in planes of the mesh
+// stay in them and keep their fronts; what is left of strips vanishes between them. Where less than three of four faces
+// are in planes, strips are judged one by one: those stay as they are of which too many faces are in none. Whether
+// faces intersect now, or nodes have changed sides, is not looked at. The same for any number of threads. Needs
+// DefaultFloatingPoint.
+class Sharpener {
+ public:
+  // Adds spare vertices and faces to the surface, which are gone at first. Precondition: sources are triangles of
+  // `input`, or kHole. Both meshes must stay, and nobody else may change them, and so must `distance`, that from
+  // `input`. `normals`: of `input`.
+  Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
+            const DistanceEvaluator& distance, const SharpenLimits& limits);
+  Sharpener(const Sharpener&) = delete;
+  Sharpener& operator=(const Sharpener&) = delete;
+
+  // Pulls. Returns what that has changed. What is left of strips may turn over on the way, and may then cross other
+  // faces.
+  SurfaceEdit sharpen();
+  // Makes the surface what it is if vertices are not pulled: those that were pulled into one of `vertices`, and these;
+  // and all that hang together with them by faces of strips, if `all`. Strips that hang together with them are pulled
+  // anew, and do not turn over. Numbers of other vertices are ignored. Returns what that has changed, with the faces at
+  // `vertices` in any case, so that faults there are looked for again.
+  SurfaceEdit keep(const std::vector<std::uint32_t>& vertices, bool all);
+
+  // Either of these comes last. Back to the surface as it was at first, without spare vertices and faces.
+  void undo();
+  // Gives faces the sources that they have now, and drops those that are gone, and vertices that no face has.
+  void finish();
+
+  [[nodiscard]] std::size_t pulls() const;
+  // Where pulled vertices are now; each once for all that were pulled there.
+  template <class Visit>
+  void for_each_target(const Visit& visit) const {
+    for (std::uint32_t n = 0; n < strip_vertices_.size(); ++n) {
+      if (now_.into[n] == n) visit(strip_vertices_[n], now_.places[n]);
+    }
+  }
+
+ private:
+  friend class StripPulls;
+  static constexpr std::uint32_t kNoPlace = UINT32_MAX;
+  static constexpr std::uint8_t kKeptFrom = 2;  // at faults once, vertices are not pulled; twice, gaps are left, too
+  struct State {
+    std::vector<Triangle> triangles;     // of the faces at strips; those that are gone have three equal corners
+    std::vector<std::int32_t> sources;   // likewise
+    std::vector<Placed> placed;          // likewise
+    std::vector<std::uint8_t> hopeless;  // of each first face of a gap, whether that could not be filled
+    std::vector<Vec3> places;            // of the vertices of strips
+    std::vector<std::uint32_t> into;     // likewise, by their places
+  };
+  // Strips that hang together: pulls see nothing of others. Its faces and vertices follow each other.
+  struct Part {
+    std::uint32_t first_vertex = 0, vertices = 0, first_face = 0, faces = 0;
+    std::uint32_t spares = 0;  // its last vertices, and half as many as there are spare faces
+    std::size_t pulls = 0;
+    bool may_turn = true;
+  };
+
+  void find_strips(const std::vector<Placed>& of_all);
+  void add_to_strips(const Triangle& t);
+  void extend_strips(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all);
+  std::vector<std::uint32_t> find_parts(const std::vector<Triangle>& triangles,
+                                        const std::vector<std::uint32_t>& at_strips);
+  void drop_parts(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all,
+                  std::vector<std::uint32_t>& at_strips, std::vector<std::uint32_t>& part);
+  void number_vertices(const std::vector<std::uint32_t>& part, const std::vector<Triangle>& triangles,
+                       const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips);
+  void add_faces(const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips);
+  [[nodiscard]] std::uint32_t part_of_face(const Triangle& t) const;
+  void pull(const std::vector<std::uint32_t>& parts);
+  void keep_in(const Part& part, const std::vector<std::uint8_t>& named, bool all);
+  [[nodiscard]] bool has_changed(const Part& part, const State& before) const;
+  [[nodiscard]] SurfaceEdit changes_of(const std::vector<std::uint32_t>& parts, const State& before,
+                                       const std::vector<std::uint8_t>& named) const;
+
+  SurfaceMesh& surface_;                      // at strips as now_ has it, but for sources; elsewhere as it was
+  std::size_t first_vertices_, first_faces_;  // how many there are without spare ones
+  const TriangleMesh& input_;
+  const DistanceEvaluator& distance_;
+  SharpenLimits limits_;
+  std::vector<std::uint32_t> place_;  // of each vertex among strip_vertices_, or kNoPlace
+  std::vector<std::uint32_t> strip_vertices_;
+  std::vector<std::uint8_t> kept_;      // of each of these
+  std::vector<std::uint32_t> part_of_;  // likewise
+  std::vector<Part> parts_;
+  std::vector<std::uint32_t> faces_;  // with a vertex of a strip
+  State first_, now_;
+};
+
+}  // namespace raycone

@@ -20,13 +20,13 @@ BESIDE = {"core/distance": ["core/data", "core/machine", "core/exact", "core/mes
           "core/arrangement": ["core/data", "core/machine", "core/exact", "core/mesh", "core/intersections"],
           "core/sampling": ["core/data", "core/machine", "core/exact"]}
 # The steps of a closed surface.
-BELOW_CELLS = [*STEPS, "core/distance", "core/intersections"]
+STEPS_AND_SEARCHES = [*STEPS, "core/distance", "core/intersections"]
 SURFACE = {"core/cells": STEPS,
            "core/certificate": [*STEPS, "core/intersections", "core/cells"],
            "core/contour": [*STEPS, "core/cells"],
-           "core/sharpening": [*BELOW_CELLS, "core/cells", "core/certificate"],
-           "core/merging": [*BELOW_CELLS, "core/cells", "core/certificate"],
-           "core/surface": [*BELOW_CELLS, "core/cells", "core/certificate", "core/contour", "core/sharpening",
+           "core/sharpening": [*STEPS_AND_SEARCHES, "core/cells", "core/certificate"],
+           "core/merging": [*STEPS_AND_SEARCHES, "core/cells", "core/certificate"],
+           "core/surface": [*STEPS_AND_SEARCHES, "core/cells", "core/certificate", "core/contour", "core/sharpening",
                             "core/merging"]}
 SURFACE["core/filling"] = [*SURFACE["core/surface"], "core/arrangement", "core/surface"]
 BESIDE.update(SURFACE)

@@ -1,4 +1,4 @@
-// A job of a batch: one mesh evaluated, as the single command does, and what became of it.
+// A job of a batch: one mesh evaluated, as by the single command, and what became of it.
 #pragma once
 
 #include "app/batch/job_result.h"

@@ -60,8 +60,8 @@ struct BatchCommand {
   bool dry_run = false;
 };
 
-// All that results depend on beside the mesh: its result_options, and the grid of --like by its `hash`; "" where there
-// is none.
+// What results depend on beside the mesh, as text: the command's result_options and, with --like, the `hash` of the
+// grid, "" where it is not known.
 [[nodiscard]] inline std::string options_with_grid(const BatchCommand& command, const std::string& hash) {
   return grid_of(command.for_each) ? command.result_options + '\n' + hash : command.result_options;
 }

@@ -11,7 +11,8 @@ namespace raycone {
 // others have nine digits at most, as numbers in text files; a thousandth of a voxel at most, far from the origin.
 [[nodiscard]] double plane_tolerance(const TriangleMesh& mesh, const Lattice& lattice);
 
-// The same of coordinates that are what they say, whatever their format rounds.
+// How far numbers in double precision may be off a plane, whatever the mesh's format rounds: a billionth of a voxel, or
+// 2^-50 of the largest coordinate of the lattice.
 [[nodiscard]] double fine_tolerance(const Lattice& lattice);
 
 }  // namespace raycone

@@ -10,7 +10,7 @@
 #include "core/cells/edge_points.h"
 #include "core/cells/surface_cells.h"
 #include "core/cells/surface_in_cells.h"
-#include "core/data/triangle_mesh.h"
+#include "core/data/vec3.h"
 
 namespace raycone {
 

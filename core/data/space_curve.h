@@ -22,7 +22,8 @@ namespace raycone {
 
 class SpaceCurve {
  public:
-  // Through 2^(3 bits) cubes, bits <= 21, of a finite box.
+  // Through 2^(3 bits) cubes, bits <= 21, of a finite box, or of an empty one that is asked for no place. In a box of
+  // less than 2^-1000 many points share a place.
   SpaceCurve(const Box& box, unsigned bits) : lower_(box.lower), cubes_(static_cast<double>(std::uint64_t{1} << bits)) {
     cubes_per_unit_ = cubes_ / std::max(longest_side(box), std::numeric_limits<double>::min());
   }

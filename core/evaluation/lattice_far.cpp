@@ -145,7 +145,7 @@ void evaluate_blocks(const ScaledRows& part, const LatticeAxes& axes,
                      const std::function<CrossingsOfRow(std::size_t row)>& crossings, std::span<double> values,
                      std::atomic<std::uint64_t>* done) {
   const ScaledMesh& mesh = part.mesh;
-  SampleBox box;  // of the whole lattice's samples
+  SampleBox box;  // the part, by indices in the whole lattice
   for (std::size_t a = 0; a < 3; ++a) {
     box.begin[a] = static_cast<std::size_t>(part.block.first[a] - part.lattice.index_min[a]);
     box.end[a] = box.begin[a] + static_cast<std::size_t>(part.block.counts[a]);

@@ -34,7 +34,7 @@ struct CrossingsOfRow {
   RowRuns mesh, caps;
 };
 
-// Sets the winding numbers of the samples of `part`, of the lattice with these axes, within the tolerance; x fastest.
+// Sets the winding numbers of the samples of `part`, within the tolerance; x fastest. `axes`: those of its lattice.
 // `crossings` is asked for each row, several times and by several threads; never where values do not depend on
 // crossings. Those of a sample may be kept in its value: they are read before. A value that may be a half-integer,
 // where rules have their thresholds, is as ScaledMesh::set_values() sets it. `done`, where given, grows by one per

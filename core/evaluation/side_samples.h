@@ -34,7 +34,7 @@ class SideSamples {
   using Index = std::array<std::size_t, 3>;  // along each axis
 
   // `crossings` are the finished runs of the mesh, `cap_crossings` those of mesh.caps(), both of `rows`, and both
-  // without crossings where values depend on none.
+  // without crossings where values depend on none. `sides`: one for each sample of `rows`, x fastest.
   SideSamples(const ScaledMesh& mesh, const LatticeRows& rows, const Rule& rule, const LatticeSums& crossings,
               const LatticeSums& cap_crossings, std::span<std::uint8_t> sides)
       : mesh_(mesh),

@@ -1,6 +1,9 @@
 #include "core/intersections/pair_tree.h"
 
+#include <algorithm>
+#include <bit>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "core/machine/threads.h"

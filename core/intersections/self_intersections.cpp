@@ -4,7 +4,6 @@
 #include <atomic>
 #include <limits>
 #include <mutex>
-#include <utility>
 
 #include "core/intersections/curve_order.h"
 #include "core/intersections/pair_tree.h"

@@ -24,7 +24,7 @@ struct SelfIntersections {
 enum class SearchOrder {
   kRuns,   // in runs that medians cut, whatever their sizes and places
   kCurve,  // along a curve through 2048^3 equal cubes: sooner where sizes are much the same, as on surfaces of
-           // lattices. Triangles of one cube are in no order; beside one far away, all others may be in one
+           // lattices. Triangles of one cube go by number; beside one far away, all others may be in one
 };
 
 // The pairs of triangles that meet_beyond_shared() (core/intersections/triangle_pair.h). Exact. The same for any number

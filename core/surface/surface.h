@@ -52,8 +52,8 @@ class SurfaceFailure : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// The sides of cells are so small beside the largest coordinate of the lattice, along any axis, that coordinates cannot
-// tell them apart.
+// The shortest side of a cell is so small beside the largest coordinate of the lattice, along whichever axis, that
+// coordinates cannot tell nodes apart.
 class LatticeTooFine : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -1,4 +1,5 @@
-// What is refused for lack of memory; memory_limit_test.py asks whether runs stay within their limit.
+// What is refused for lack of memory, and what this machine has; memory_limit_test.py asks whether runs stay within
+// their limit.
 #include "app/process/memory_limit.h"
 
 #include <gtest/gtest.h>

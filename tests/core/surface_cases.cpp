@@ -13,9 +13,9 @@
 #include <span>
 #include <vector>
 
+#include "core/certificate/certificate.h"
 #include "core/contour/vertex_places.h"
 #include "core/distance/distance.h"
-#include "core/sharpening/sharpen.h"
 
 namespace raycone::test {
 

@@ -17,10 +17,10 @@ namespace raycone::test {
 
 inline constexpr SurfaceMargins kSurfaceMargins;  // those of double precision near the origin
 
-// Of side^3 nodes; neither at the origin nor with its first index at 0.
+// Of side^3 nodes; neither at the origin nor with all its first indices at 0.
 Lattice lattice_off_origin(std::int64_t side, double spacing = 1.0);
 
-// Those nodes, by their indices from the first one on; none on the lattice's outside.
+// The nodes where `inside` holds, which gets their indices counted from the first one; none of the outermost layer.
 NodeSet nodes_where(const Lattice& lattice,
                     const std::function<bool(std::int64_t, std::int64_t, std::int64_t)>& inside);
 

@@ -21,7 +21,6 @@ namespace raycone {
 namespace {
 
 using test::largest_distance_of;
-using test::lattice_off_origin;
 using test::Random;
 using test::rotated;
 using test::surface_of;
@@ -73,11 +72,11 @@ TEST(SurfaceMeasures, TellFacesNextToTheSurfaceFromItsOwn) {
 // Far from the origin, in double precision.
 TEST(SurfaceMeasures, AreAsFineFarAway) {
   const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1}), far = test::moved(box, {1, 1, 1}, {1e6 + 0.1, 0, 0});
-  const auto lattice_off_origin = [](const TriangleMesh& mesh) {
+  const auto lattice_of = [](const TriangleMesh& mesh) {
     return Lattice{bounding_box(mesh).lower, {0.1, 0.1, 0.1}, {-1, -1, -1}, {12, 12, 12}};
   };
   const auto off = [&](const TriangleMesh& mesh, bool single) {
-    return farthest_kept(mesh, lattice_off_origin(mesh), true, single);
+    return farthest_kept(mesh, lattice_of(mesh), true, single);
   };
   EXPECT_NEAR(off(box, false), 2e-4, 1e-4);  // 2^-9 voxels
   EXPECT_NEAR(off(far, false), 2e-4, 1e-4);

@@ -222,7 +222,7 @@ TriangleMesh hourglass() {
            {5, 8, 7}}};
 }
 
-// Of the eight planes at the tip, those of two faces that meet in an edge leave a whole line to choose from.
+// At the tip eight faces lie in four planes, and those of two faces that meet in an edge leave a line to choose from.
 TEST(Surface, KeepsTipsThatTouch) {
   for (int n = 0; n < 24; ++n) {
     const TriangleMesh mesh = turned(hourglass(), {1.0, 0.3 * (n % 8) - 1.0, 0.7 - 0.1 * n}, 0.4 + 0.9 * n);

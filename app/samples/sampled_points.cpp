@@ -31,8 +31,8 @@ class SampledPoints final : public PointReader {
     return !batch.empty();
   }
   [[nodiscard]] SurfacePlaces places() override {
-    normals_.clear();
-    for (const std::int64_t face : faces_) normals_.push_back(face < 0 ? Vec3{} : sampler_.normal(face));
+    normals_.resize(faces_.size());
+    sampler_.set_normals(faces_, normals_);
     return {normals_, faces_};
   }
   [[nodiscard]] bool would_block() override { return false; }

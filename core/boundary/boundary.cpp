@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "core/boundary/close_enclosure.h"
 #include "core/boundary/enclosure.h"
 #include "core/data/rule.h"
 #include "core/exact/predicates.h"
@@ -18,9 +19,10 @@ bool projects_to_a_point(const Vec3& a, const Vec3& b) { return a.y == b.y && a.
 constexpr long double kWideRounding = std::numeric_limits<long double>::epsilon() / 2;
 
 // Whether w, which differs from `value` by at most 1/8 and from -(turns of the cone) by an integer, is above
-// `critical` (1), below (-1), or cannot be told from it (0). `rounding`: u of Real.
+// `critical` (1), below (-1), or indistinguishable from it (0); nothing where the bound is too large to tell.
+// `rounding`: u of Real.
 template <class Real>
-int side_of(double critical, double value, const TurnsWithin<Real>& cone, Real rounding) {
+std::optional<int> side_of(double critical, double value, const TurnsWithin<Real>& cone, Real rounding) {
   const auto rest = static_cast<long double>(cone.rest);
   const auto n = static_cast<std::int64_t>(std::nearbyint(value + (static_cast<long double>(cone.whole) + rest)));
   const Real whole = static_cast<Real>(n - cone.whole);
@@ -28,8 +30,11 @@ int side_of(double critical, double value, const TurnsWithin<Real>& cone, Real r
   const Real difference = w - static_cast<Real>(critical);
   const auto magnitude = [](Real x) { return x < 0 ? -x : x; };
   const Real bound = cone.bound + 2 * rounding * (magnitude(w) + magnitude(difference));
-  const Real error = bound <= Real(kIndistinguishable) ? Real(kIndistinguishable) : bound;  // NaN tells nothing
-  return static_cast<int>(difference > error) - static_cast<int>(difference < -error);
+  const bool is_close = bound <= Real(kIndistinguishable);  // not so where the bound is NaN
+  const Real error = is_close ? Real(kIndistinguishable) : bound;
+  if (difference > error) return 1;
+  if (difference < -error) return -1;
+  return is_close ? std::optional(0) : std::nullopt;
 }
 
 DirectedEdge directed(const Vec3& from, const Vec3& to, bool reversed, std::int32_t multiplicity) {
@@ -114,12 +119,13 @@ bool Boundary::lies_in_plane_of_edges(const Vec3& q) const {
 double Boundary::settle(const Vec3& q, double w, double critical) const {
   const bool multiple_of_half = std::nearbyint(2 * critical) == 2 * critical;
   if (multiple_of_half && std::abs(w - critical) < 0.25 && lies_in_plane_of_edges(q)) return critical;
-  int side = side_of<long double>(critical, w, enclose<long double>(groups_, q), kWideRounding);
-  if (side == 0) side = side_of<Quad>(critical, w, enclose<Quad>(groups_, q), kQuadRounding);
-  if (side == 0) return critical;
+  std::optional<int> side = side_of<long double>(critical, w, enclose_in_64_bits(groups_, q), kWideRounding);
+  if (!side) side = side_of<Quad>(critical, w, enclose_in_106_bits(groups_, q), kQuadRounding);
+  if (!side) side = side_of<Quad>(critical, w, enclose_in_113_bits(groups_, q), kQuadRounding);
+  if (!side || *side == 0) return critical;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return side > 0 ? std::max(w, std::nextafter(critical, kInfinity))
-                  : std::min(w, std::nextafter(critical, -kInfinity));
+  return *side > 0 ? std::max(w, std::nextafter(critical, kInfinity))
+                   : std::min(w, std::nextafter(critical, -kInfinity));
 }
 
 }  // namespace raycone

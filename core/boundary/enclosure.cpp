@@ -1,7 +1,6 @@
-// Running error analysis: every constant counts roundings, derived in docs/method.md, "Error bound".
+// Running error analysis: every constant counts roundings, derived in docs/method.md, "Error bound". Exponents of long
+// double neither over- nor underflow here: products of two numbers in range reach 2^+-4000, and their squares 2^+-8000.
 #include "core/boundary/enclosure.h"
-
-#include <quadmath.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,15 +11,11 @@
 #include "core/boundary/angle.h"
 #include "core/boundary/edge_factor.h"
 #include "core/boundary/near_edge.h"
+#include "core/boundary/sum_of_groups.h"
 #include "core/exact/predicates.h"
 
 namespace raycone {
 namespace {
-
-// ---- In 64 bits -----------------------------------------------------------------------------------------------------
-//
-// Exponents of long double neither over- nor underflow here: products of two numbers in range reach 2^+-4000, and their
-// squares 2^+-8000.
 
 using Wide = long double;
 
@@ -133,78 +128,10 @@ TurnsWithin<Wide> enclose_group(const ChainGroup& group, const Vec3& q) {
   return turns_of(product);
 }
 
-// ---- In 113 bits ----------------------------------------------------------------------------------------------------
-
-const Quad kTurn = 8 * atanq(1);
-
-// As WideProduct, with a coarser bound.
-struct QuadProduct {
-  Factor<Quad> z{1, 0};
-  std::int64_t turns = 0;
-  Quad error = 0;  // of its argument, radians
-
-  // `error`: of the factor's argument. Both factors and product are rounded, the latter by sqrt(5) u (docs/method.md).
-  void multiply(const Factor<Quad>& f, Quad factor_error) {
-    const Factor<Quad> product{z.re * f.re - z.im * f.im, z.re * f.im + z.im * f.re};
-    const bool before = signbitq(z.im) != 0, turn = signbitq(f.im) != 0, after = signbitq(product.im) != 0;
-    if (before == turn && after != before) turns += before ? -1 : 1;
-    error += factor_error + 8 * kQuadRounding;
-    const int exponent = -ilogbq(fmaxq(absolute(product.re), absolute(product.im)));
-    z = {scalbnq(product.re, exponent), scalbnq(product.im, exponent)};
-  }
-};
-
-void multiply_edge(QuadProduct& product, const Vec3& a, const Vec3& b, bool reversed, const Vec3& q) {
-  const EdgeSide side = edge_side(a, b, q);
-  if (side.sign == 0) return;
-  const auto with_sign = [&](const Factor<Quad>& f) {
-    return Factor<Quad>{f.re, copysignq(f.im, reversed ? -side.sign : side.sign)};
-  };
-  if (side.tie) {
-    if (const auto f = unscaled_tied_factor<Quad>(a, b, q)) product.multiply(with_sign(*f), 0);
-    return;
-  }
-  const NearEdgeFactor<Quad> f = near_edge_factor<Quad>(a, b, q);
-  product.multiply(with_sign(f.factor), f.error);
-}
-
-TurnsWithin<Quad> enclose_group_closely(const ChainGroup& group, const Vec3& q) {
-  QuadProduct product;
-  for (std::size_t i = 1; i < group.steps.size(); ++i) {
-    const ChainStep& step = group.steps[i];
-    if (step.joined) multiply_edge(product, group.steps[i - 1].to, step.to, step.reversed, q);
-  }
-  return {product.turns, atan2q(product.z.im, product.z.re) / kTurn, product.error / kTurn};
-}
-
-// ---- In either ------------------------------------------------------------------------------------------------------
-
-// The sum over the groups; `rounding` bounds what a group's rest, its multiple and the sum round, relative to the two.
-template <class Real, class EncloseGroup>
-TurnsWithin<Real> sum_of_groups(std::span<const ChainGroup> groups, Real rounding, const EncloseGroup& enclose_one) {
-  const auto magnitude = [](Real x) { return x < 0 ? -x : x; };
-  TurnsWithin<Real> sum;
-  for (const ChainGroup& group : groups) {
-    const TurnsWithin<Real> turns = enclose_one(group);
-    const Real rest = group.multiplicity * turns.rest;
-    sum.whole += group.multiplicity * turns.whole;
-    sum.rest += rest;
-    sum.bound += group.multiplicity * turns.bound + rounding * (magnitude(rest) + magnitude(sum.rest));
-  }
-  return sum;
-}
-
 }  // namespace
 
-template <>
-TurnsWithin<Wide> enclose<Wide>(std::span<const ChainGroup> groups, const Vec3& q) {
+TurnsWithin<Wide> enclose_in_64_bits(std::span<const ChainGroup> groups, const Vec3& q) {
   return sum_of_groups<Wide>(groups, u, [&](const ChainGroup& group) { return enclose_group(group, q); });
-}
-
-template <>
-TurnsWithin<Quad> enclose<Quad>(std::span<const ChainGroup> groups, const Vec3& q) {
-  return sum_of_groups<Quad>(groups, 8 * kQuadRounding,
-                             [&](const ChainGroup& group) { return enclose_group_closely(group, q); });
 }
 
 }  // namespace raycone

@@ -6,7 +6,6 @@
 
 #include "core/boundary/chain.h"
 #include "core/data/vec3.h"
-#include "core/exact/quad.h"
 
 namespace raycone {
 
@@ -20,8 +19,7 @@ struct TurnsWithin {
 
 // The winding number of the cone over the edges (core/boundary/cone.h), sign as in w = n - w_cone. It shares the signs
 // of the sides and the order of the edges with the sum in double precision, not the arithmetic: a check of that. A
-// hundred times slower with 64 bits, thousands of times with 113. Needs DefaultFloatingPoint. Thread-safe.
-template <class Real>  // long double or Quad
-[[nodiscard]] TurnsWithin<Real> enclose(std::span<const ChainGroup> groups, const Vec3& q);
+// hundred times slower. Needs DefaultFloatingPoint. Thread-safe.
+[[nodiscard]] TurnsWithin<long double> enclose_in_64_bits(std::span<const ChainGroup> groups, const Vec3& q);
 
 }  // namespace raycone

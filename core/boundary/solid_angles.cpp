@@ -13,14 +13,6 @@
 namespace raycone {
 namespace {
 
-Vec3 normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto component = [&](int i, int j) {
-    return rounded_determinant(difference(b[i], a[i]), difference(b[j], a[j]), difference(c[i], a[i]),
-                               difference(c[j], a[j]));
-  };
-  return {component(1, 2), component(2, 0), component(0, 1)};
-}
-
 // Beyond this length of a side the kernel must not trust a factor: next to one corner |b|^2 may underflow while |a| and
 // |c| make up for it, and a normal that has underflowed may decide a side. Below it |z| < 2^-120, too small for the
 // kernel, where |b| < 2^-450, and the error of n . a is below 2^-1000 next to the triangle. No mesh in scale is so
@@ -45,7 +37,7 @@ SolidTriangle with_sorted_corners(const Vec3& a, const Vec3& b, const Vec3& c) {
   sort(t.a, t.b);
   sort(t.b, t.c);
   sort(t.a, t.b);
-  t.normal = normal(t.a, t.b, t.c);
+  t.normal = rounded_cross_of_differences(t.b, t.c, t.a);
   if (is_long(t.a, t.b) || is_long(t.b, t.c) || is_long(t.c, t.a)) {
     t.normal.x = std::numeric_limits<double>::quiet_NaN();
   }

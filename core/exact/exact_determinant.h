@@ -82,4 +82,13 @@ inline void add_product(ExactSum& sum, const Difference& x, const Difference& y,
   return (is_sure && in_range ? sum.high : static_cast<double>(determinant(a, b, c, d))) + 0.0;
 }
 
+// (a - q) x (b - q), each component as rounded_determinant().
+[[nodiscard]] inline Vec3 rounded_cross_of_differences(const Vec3& a, const Vec3& b, const Vec3& q) {
+  const auto component = [&](int i, int j) {
+    return rounded_determinant(difference(a[i], q[i]), difference(a[j], q[j]), difference(b[i], q[i]),
+                               difference(b[j], q[j]));
+  };
+  return {component(1, 2), component(2, 0), component(0, 1)};
+}
+
 }  // namespace raycone

@@ -18,11 +18,14 @@ std::uint64_t count_of(const SampleGroup& group) {
   return std::visit([](const auto& one) { return one.count; }, group);
 }
 
-// Twice the area along each axis, each part rounded once.
+// Twice the area along each axis, each part rounded once, to 53 bits or more: its exponents are those of any triangle.
 struct AreaVector {
   long double x, y, z;
 };
 AreaVector area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
+  const Vec3 rounded = rounded_cross_of_differences(b, c, a);
+  const double largest = largest_coordinate(rounded);
+  if (largest > 0x1p-900 && largest < 0x1p1000) return {rounded.x, rounded.y, rounded.z};
   const QuadVec3 v = cross_of_differences(b, c, a);
   return {static_cast<long double>(v.x), static_cast<long double>(v.y), static_cast<long double>(v.z)};
 }
@@ -181,9 +184,15 @@ void PointSampler::draw(std::uint64_t first, std::span<Vec3> points, std::span<s
   });
 }
 
-Vec3 PointSampler::normal(std::int64_t face) const {
-  const Triangle& t = mesh_.triangles[static_cast<std::size_t>(face)];
-  return unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+void PointSampler::set_normals(std::span<const std::int64_t> faces, std::span<Vec3> normals) const {
+  parallel_for_each(faces.size(), kPointsPerTask, [&](std::size_t n) {
+    if (faces[n] < 0) {
+      normals[n] = {};
+      return;
+    }
+    const Triangle& t = mesh_.triangles[static_cast<std::size_t>(faces[n])];
+    normals[n] = unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+  });
 }
 
 }  // namespace raycone

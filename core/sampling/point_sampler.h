@@ -44,8 +44,8 @@ class PointSampler {
   // The same, with the number of the triangle that each point of SurfaceSamples lies on; -1 of other groups.
   void draw(std::uint64_t first, std::span<Vec3> points, std::span<std::int64_t> faces) const;
 
-  // Of length 1, as the triangle faces. Precondition: it has an area, as those that draw() tells of do.
-  [[nodiscard]] Vec3 normal(std::int64_t face) const;
+  // Of the triangles that draw() tells of: of length 1, as they face; 0 for -1. As many threads.
+  void set_normals(std::span<const std::int64_t> faces, std::span<Vec3> normals) const;
 
  private:
   // A point, and the number of the triangle that it lies on, or -1.

@@ -3,9 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 
 #include "core/exact/direct_distance.h"
+#include "core/exact/exact_determinant.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -73,6 +76,31 @@ TEST(PointSampler, PointsDependOnTheirNumberAloneAndOnTheSeed) {
     for (std::size_t n = 0; n < 3; ++n) EXPECT_EQ(some[n], points[first + n]);
   }
   EXPECT_NE(all(PointSampler(mesh, kBox, groups, 2)).front(), points.front());
+}
+
+// Against the same triangle in a size at which nothing over- or underflows. A power of two leaves a normal as it is.
+TEST(PointSampler, NormalsAreThoseOfTheFacesAtAnySize) {
+  test::Random random(7);
+  const Box cube{{-1, -1, -1}, {1, 1, 1}};
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 a = test::uniform_point(random, cube), b = test::uniform_point(random, cube);
+    const double thin = std::exp2(test::uniform(random, -40, 0));
+    const Vec3 c = 0.5 * (a + b) + thin * test::uniform_point(random, cube);
+    const QuadVec3 n = cross_of_differences(b, c, a);
+    const auto length = std::sqrt(static_cast<long double>(dot(n, n)));
+    for (const int exponent : {0, 400, 1000, -400, -900}) {
+      TriangleMesh mesh{{a, b, c}, {{0, 1, 2}}};
+      for (Vec3& v : mesh.vertices) v = std::exp2(exponent) * v;
+      const std::array<std::int64_t, 2> faces{0, -1};
+      std::array<Vec3, 2> normals;
+      PointSampler(mesh, bounding_box(mesh), {SurfaceSamples{2}}, 1).set_normals(faces, normals);
+      // Each part is rounded twice, and the length once: four roundings of 2^-53 at most.
+      EXPECT_NEAR(normals[0].x, static_cast<double>(static_cast<long double>(n.x) / length), 0x1p-51);
+      EXPECT_NEAR(normals[0].y, static_cast<double>(static_cast<long double>(n.y) / length), 0x1p-51);
+      EXPECT_NEAR(normals[0].z, static_cast<double>(static_cast<long double>(n.z) / length), 0x1p-51);
+      EXPECT_EQ(normals[1], Vec3{});
+    }
+  }
 }
 
 TEST(PointSampler, TakesMeshesOfAnySize) {

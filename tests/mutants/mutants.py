@@ -204,10 +204,11 @@ MUTANTS = [
         ("core/boundary/boundary.cpp", "if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;", "")]),
     Mutant("all_edges_in_one_plane", "one exterior edge out of the plane of the others counts", [
         ("core/boundary/boundary.cpp", "} else if (plane_side(*a, *b, *c, v) != 0) {\n        return;\n      }", "}")]),
-    Mutant("settled_in_80_bits", "113 bits tell what 80 cannot", [
-        ("core/boundary/boundary.cpp", "if (side == 0) side = side_of<Quad>", "if (side == 2) side = side_of<Quad>")]),
+    Mutant("settled_in_80_bits", "64 bits cannot tell a half-integer from what is next to it", [
+        ("core/boundary/boundary.cpp", "if (!side) side = side_of<Quad>(critical, w, enclose_in_106_bits(groups_, q), kQuadRounding);\n", ""),
+        ("core/boundary/boundary.cpp", "if (!side) side = side_of<Quad>(critical, w, enclose_in_113_bits(groups_, q), kQuadRounding);\n", "")]),
     Mutant("settled_to_the_wrong_side", "a value is on the side of a half-integer on which w is", [
-        ("core/boundary/boundary.cpp", "return side > 0 ? std::max", "return side < 0 ? std::max")]),
+        ("core/boundary/boundary.cpp", "return *side > 0 ? std::max", "return *side < 0 ? std::max")]),
 
     # --- Magnitudes ---
     Mutant("mesh_not_scaled", "w(2^k M, 2^k q) is w(M, q) to the bit", [
@@ -385,6 +386,18 @@ MUTANTS = [
     Mutant("runs_end_late", "crossings of runs are those of the samples before the crossing", [
         ("core/crossings/lattice_sums.h", "upper_bound(runs_, sample, {}, &RowPrefix::samples)",
          "lower_bound(runs_, sample, {}, &RowPrefix::samples)")]),
+    Mutant("close_enclosure_in_double", "differences to the query are exact", [
+        ("core/boundary/close_enclosure.cpp", "y(exact_sum(v.y, -q.y))", "y{v.y - q.y}")]),
+    Mutant("close_enclosure_loses_signs", "the sign of 0 tells half a turn from minus half a turn", [
+        ("core/boundary/close_enclosure.cpp", "DoubleDouble{std::copysign(kTiny, high)}", "DoubleDouble{kTiny}")]),
+    Mutant("close_enclosure_is_always_plain", "near an edge z cancels, in 106 bits, too", [
+        ("core/boundary/close_enclosure.cpp", "if (!(condition < kMostCondition)) return std::nullopt;",
+         "if (!(condition > 0)) return std::nullopt;")]),
+    Mutant("close_enclosure_bounds_nothing", "what a factor is off by grows with its condition", [
+        ("core/boundary/close_enclosure.cpp", "40 * e * condition", "0.0")]),
+    Mutant("close_enclosure_out_of_range", "what over- or underflows has no bound", [
+        ("core/boundary/close_enclosure.cpp", "square.high > 0x1p-200 && square.high < 0x1p200 && std::abs(x.high) < 0x1p100",
+         "true")]),
     Mutant("settled_by_too_rough_sums", "what the direct sum cannot tell from a critical value is enclosed", [
         ("core/evaluation/settler.cpp", "> mesh_.doubt_of_direct_values()", ">= 0.0")]),
     Mutant("settled_without_whole_turns", "values tell the whole turns of the direct sum that settles them", [

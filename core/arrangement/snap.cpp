@@ -6,7 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -32,6 +35,17 @@ void merge_near_vertices(RuleBorder& border, double distance) {
     merged.sources.push_back(border.sources[face]);
   }
   border = std::move(merged);
+}
+
+void keep(RuleBorder& border, const std::vector<bool>& stays) {
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < stays.size(); ++n) {
+    if (!stays[n]) continue;
+    border.mesh.triangles[count] = border.mesh.triangles[n];
+    border.sources[count++] = border.sources[n];
+  }
+  border.mesh.triangles.resize(count);
+  border.sources.resize(count);
 }
 
 // The place of the corner that is so near to the opposite side, which is the longest one.
@@ -96,42 +110,67 @@ bool add_parts(const Triangle& triangle, std::uint32_t source, const Splits& spl
 // Of each vertex the others that it shares a triangle with, one after the other.
 class Neighbours {
  public:
-  explicit Neighbours(const TriangleMesh& mesh) : of_(mesh.vertices.size()) {
+  explicit Neighbours(const TriangleMesh& mesh) : first_(mesh.vertices.size() + 1) {
     for (const Triangle& t : mesh.triangles) {
-      for (std::size_t n = 0; n < 3; ++n) of_[t[n]].insert(of_[t[n]].end(), {t[(n + 1) % 3], t[(n + 2) % 3]});
+      for (const std::uint32_t corner : t) first_[corner + 1] += 2;
     }
-    for (std::vector<std::uint32_t>& of_one : of_) {
-      std::ranges::sort(of_one);
-      of_one.erase(std::unique(of_one.begin(), of_one.end()), of_one.end());
+    std::partial_sum(first_.begin(), first_.end(), first_.begin());
+    others_.resize(first_.back());
+    end_ = first_;
+    for (const Triangle& t : mesh.triangles) {
+      for (std::size_t n = 0; n < 3; ++n) {
+        others_[end_[t[n]]++] = t[(n + 1) % 3];
+        others_[end_[t[n]]++] = t[(n + 2) % 3];
+      }
+    }
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+      const std::span<std::uint32_t> all = std::span(others_).subspan(first_[v], end_[v] - first_[v]);
+      std::ranges::sort(all);
+      end_[v] -= std::ranges::unique(all).size();
     }
   }
-  [[nodiscard]] const std::vector<std::uint32_t>& of(std::uint32_t vertex) const { return of_[vertex]; }
+  [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t vertex) const {
+    return std::span(others_).subspan(first_[vertex], end_[vertex] - first_[vertex]);
+  }
 
  private:
-  std::vector<std::vector<std::uint32_t>> of_;
+  std::vector<std::size_t> first_, end_;  // of each vertex's in others_
+  std::vector<std::uint32_t> others_;
 };
 
-// A point that is no farther from a triangle, and next to its inside.
-bool is_on(const TriangleMesh& mesh, const Triangle& t, const Vec3& p, double distance) {
-  const std::array<Vec3, 3> corners{mesh.vertices[t[0]] - p, mesh.vertices[t[1]] - p, mesh.vertices[t[2]] - p};
-  const Vec3 area = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const double size = safe_norm(area);
-  if (!(size > 0.0) || !(std::abs(dot(corners[0], area)) <= distance * size)) return false;
-  for (std::size_t n = 0; n < 3; ++n) {
-    const Vec3 &from = corners[n], &to = corners[(n + 1) % 3];
-    if (!(dot(cross(from, to), area) > distance * safe_norm(to - from) * size)) return false;
+// The points that are no farther from a triangle, and next to its inside.
+class NearInside {
+ public:
+  NearInside(const TriangleMesh& mesh, const Triangle& t, double distance)
+      : corners_{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]},
+        area_(cross(corners_[1] - corners_[0], corners_[2] - corners_[0])),
+        size_(safe_norm(area_)),
+        distance_(distance) {}
+
+  [[nodiscard]] bool holds(const Vec3& p) const {
+    if (!(size_ > 0.0) || !(std::abs(dot(corners_[0] - p, area_)) <= distance_ * size_)) return false;
+    for (std::size_t n = 0; n < 3; ++n) {
+      const Vec3 from = corners_[n] - p, to = corners_[(n + 1) % 3] - p;
+      if (!(dot(cross(from, to), area_) > distance_ * safe_norm(to - from) * size_)) return false;
+    }
+    return true;
   }
-  return true;
-}
+
+ private:
+  std::array<Vec3, 3> corners_;
+  Vec3 area_;
+  double size_, distance_;
+};
 
 // Cuts triangles in three at the neighbours of their corners that are on them. Whether there were any.
 bool split_at_corners_on_triangles(RuleBorder& border, double distance) {
   const TriangleMesh& mesh = border.mesh;
   const Neighbours neighbours(mesh);
   const auto corner_on = [&](const Triangle& t) -> std::optional<std::uint32_t> {
+    const NearInside inside(mesh, t, distance);
     for (const std::uint32_t corner : t) {
       for (const std::uint32_t v : neighbours.of(corner)) {
-        if (std::ranges::find(t, v) == t.end() && is_on(mesh, t, mesh.vertices[v], distance)) return v;
+        if (inside.holds(mesh.vertices[v]) && std::ranges::find(t, v) == t.end()) return v;
       }
     }
     return std::nullopt;
@@ -163,26 +202,33 @@ bool split_at_flat_triangles(RuleBorder& border, double distance) {
   return true;
 }
 
-// Leaves one triangle less for each that is the same in the other direction.
+// Leaves one triangle less for each that is the same in the other direction: of all that have the same corners, the
+// first ones of the direction that has more.
 void cancel(RuleBorder& border) {
-  std::map<Triangle, int> count;  // of triangles by their sorted corners: how many more are even permutations of them
-  const auto sorted = [](Triangle t) {
-    std::ranges::sort(t);
-    return t;
+  struct Sorted {
+    Triangle corners;  // in order
+    std::uint32_t face;
+    int direction;  // 1 of an even permutation, else -1
   };
-  const auto is_even = [](const Triangle& t) { return (t[0] < t[1]) == ((t[1] < t[2]) == (t[0] < t[2])); };
-  for (const Triangle& t : border.mesh.triangles) count[sorted(t)] += is_even(t) ? 1 : -1;
-  RuleBorder left{{std::move(border.mesh.vertices), {}}, {}};
-  for (std::size_t n = 0; n < border.sources.size(); ++n) {
-    const Triangle& t = border.mesh.triangles[n];
-    int& more = count[sorted(t)];
-    const int direction = is_even(t) ? 1 : -1;
-    if (more * direction <= 0) continue;
-    more -= direction;
-    left.mesh.triangles.push_back(t);
-    left.sources.push_back(border.sources[n]);
+  std::vector<Sorted> faces;
+  faces.reserve(border.sources.size());
+  for (Triangle t : border.mesh.triangles) {
+    const bool is_even = (t[0] < t[1]) == ((t[1] < t[2]) == (t[0] < t[2]));
+    std::ranges::sort(t);
+    faces.push_back({t, static_cast<std::uint32_t>(faces.size()), is_even ? 1 : -1});
   }
-  border = std::move(left);
+  std::ranges::sort(faces, {}, [](const Sorted& s) { return std::tie(s.corners, s.face); });
+  std::vector<bool> stays(faces.size(), false);
+  for (std::size_t begin = 0, end = 0; begin < faces.size(); begin = end) {
+    int more = 0;
+    for (; end < faces.size() && faces[end].corners == faces[begin].corners; ++end) more += faces[end].direction;
+    for (std::size_t n = begin; n < end; ++n) {
+      if (more * faces[n].direction <= 0) continue;
+      more -= faces[n].direction;
+      stays[faces[n].face] = true;
+    }
+  }
+  keep(border, stays);
 }
 
 }  // namespace

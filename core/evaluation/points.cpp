@@ -104,7 +104,7 @@ class CoherentOrder {
     Keys keys{far ? 1U << (3 * kBits) : std::uint32_t{ProjectedGrid::kMortonCodes}, {}, true, {}};
     keys.of_points.resize(points.size());
     std::atomic<bool> all_taken = true;
-    const SpaceCurve curve(bounding_box(mesh.mesh()), kBits);
+    const SpaceCurve curve(far ? bounding_box(mesh.mesh()) : empty_box(), kBits);
     const auto key_of = [&](const Vec3& q) -> std::uint32_t {
       return far ? static_cast<std::uint32_t>(curve.place(q)) : mesh.grid().morton_code(q);
     };
@@ -300,6 +300,14 @@ class BatchEvaluation {
   const CoherentOrder& order_;
 };
 
+// How many buckets of these points one thread takes at once: enough that tiles are full, if each thread has a few
+// points.
+std::size_t buckets_of_a_part(std::size_t points) {
+  constexpr std::size_t kFew = 8;
+  const std::size_t parts = std::max(points / kTile, std::min(static_cast<std::size_t>(thread_count()), points / kFew));
+  return CoherentOrder::kBuckets / std::clamp<std::size_t>(parts, 1, CoherentOrder::kBuckets);
+}
+
 // Some of the points, at most as many as CoherentOrder takes.
 Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, const ValueOutputs& out,
                      ScaledMesh::Settling settling) {
@@ -312,7 +320,7 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, c
   if (blocks) blocks->sums.prepare(order.groups());
   const BatchEvaluation batch(meshes, order);
   SharedTally total;
-  parallel_for(CoherentOrder::kBuckets, 1, [&](std::size_t begin, std::size_t end) {
+  parallel_for(CoherentOrder::kBuckets, buckets_of_a_part(points.size()), [&](std::size_t begin, std::size_t end) {
     PointTile tile(out.values, out.diagnostics, settling);
     Tally tally;
     for (std::size_t bucket = begin; bucket < end; ++bucket) {

@@ -24,7 +24,7 @@ FillFaces::FillFaces(SurfaceMesh& surface) : surface_(surface) {
   std::size_t others = 0;
   for (std::size_t face = 0; face < triangles.size(); ++face) {
     if (surface.sources[face] == kHole) {
-      faces_.push_back(triangles[face]);
+      add_face(triangles[face]);
       for (const std::uint32_t corner : triangles[face]) is_used[corner] = true;
       add_edges_of(triangles[face]);
     } else {
@@ -44,6 +44,7 @@ void FillFaces::put_back() {
   surface_.mesh.triangles.insert(surface_.mesh.triangles.end(), faces_.begin(), faces_.end());
   surface_.sources.resize(surface_.mesh.triangles.size(), kHole);
   faces_.clear();
+  sides_.clear();
   inner_.clear();
 }
 
@@ -82,17 +83,27 @@ void FillFaces::add_edges_of(const Triangle& t) {
   }
 }
 
+std::uint32_t FillFaces::add_face(const Triangle& t) {
+  changed_.push_back(size());
+  faces_.push_back(t);
+  return size() - 1;
+}
+
+void FillFaces::change(std::uint32_t face, const Triangle& t) {
+  changed_.push_back(face);
+  faces_[face] = t;
+}
+
 void FillFaces::divide(const Part& part, const Vec3& p) {
   const auto vertex = static_cast<std::uint32_t>(surface_.mesh.vertices.size());
   surface_.mesh.vertices.push_back(p);
   const auto replace = [&](std::uint32_t face, std::uint32_t gone) {
-    std::ranges::replace(faces_[face], gone, vertex);
-    add_edges_of(faces_[face]);
+    Triangle t = faces_[face];
+    std::ranges::replace(t, gone, vertex);
+    change(face, t);
+    add_edges_of(t);
   };
-  const auto copy = [&](std::uint32_t face) {
-    faces_.push_back(faces_[face]);
-    return size() - 1;
-  };
+  const auto copy = [&](std::uint32_t face) { return add_face(Triangle{faces_[face]}); };
   if (part.edge == kNone) {
     const Triangle corners = faces_[part.face];
     const std::array faces{part.face, copy(part.face), copy(part.face)};
@@ -113,30 +124,39 @@ void FillFaces::add_octahedron(const std::array<Vec3, 6>& tips, bool outward) {
     const std::uint32_t x = octant & 1U, y = octant >> 1U & 1U, z = octant >> 2U;
     Triangle face{first + x, first + 2 + y, first + 4 + z};
     if ((x ^ y ^ z ^ static_cast<std::uint32_t>(outward)) != 0) std::swap(face[1], face[2]);
-    faces_.push_back(face);
+    add_face(face);
     add_edges_of(face);
   }
 }
 
-// An edge of more than two faces, or of two in one direction, is none of them.
-void FillFaces::update_edges() {
-  struct Side {
-    std::uint32_t low, high, face;
-    bool is_up;
-    [[nodiscard]] auto edge() const { return std::pair(low, high); }
-  };
-  std::vector<Side> sides;
-  for (std::uint32_t face = 0; face < size(); ++face) {
+// Sorts those of faces that have changed alone: mostly these are few.
+void FillFaces::update_sides() {
+  std::vector<bool> is_old(faces_.size(), true);
+  std::vector<Side> others;
+  for (const std::uint32_t face : changed_) {
+    if (!is_old[face]) continue;
+    is_old[face] = false;
     for (std::size_t n = 0; n < 3; ++n) {
       const std::uint32_t a = faces_[face][n], b = faces_[face][(n + 1) % 3];
-      sides.push_back({std::min(a, b), std::max(a, b), face, a < b});
+      others.push_back({std::min(a, b), std::max(a, b), face, a < b});
     }
   }
-  std::ranges::sort(sides, {}, [](const Side& s) { return std::tuple(s.low, s.high, s.face); });
+  changed_.clear();
+  std::erase_if(sides_, [&](const Side& s) { return !is_old[s.face]; });
+  const auto place = [](const Side& s) { return std::tuple(s.low, s.high, s.face); };
+  std::ranges::sort(others, {}, place);
+  std::vector<Side> all(sides_.size() + others.size());
+  std::ranges::merge(sides_, others, all.begin(), {}, place, place);
+  sides_ = std::move(all);
+}
+
+// An edge of more than two faces, or of two in one direction, is none of them.
+void FillFaces::update_edges() {
+  update_sides();
   inner_.clear();
-  for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-    while (end < sides.size() && sides[end].edge() == sides[begin].edge()) ++end;
-    const Side &one = sides[begin], &other = sides[end - 1];
+  for (std::size_t begin = 0, end = 0; begin < sides_.size(); begin = end) {
+    while (end < sides_.size() && sides_[end].edge() == sides_[begin].edge()) ++end;
+    const Side &one = sides_[begin], &other = sides_[end - 1];
     if (end - begin != 2 || one.is_up == other.is_up) continue;
     inner_.push_back({one.low, one.high, one.is_up ? one.face : other.face, one.is_up ? other.face : one.face});
   }
@@ -173,8 +193,8 @@ bool FillFaces::flip(const InnerEdge& edge) {
   const Vec3 front = normal(edge.left) + normal(edge.right);
   if (!(dot(front, normal_of(from, b, a)) > 0.0 && dot(front, normal_of(b, to, a)) > 0.0)) return false;
   if (!edges_.insert({std::min(one, other), std::max(one, other)}).second) return false;
-  faces_[edge.left] = {edge.from, other, one};
-  faces_[edge.right] = {other, edge.to, one};
+  change(edge.left, {edge.from, other, one});
+  change(edge.right, {other, edge.to, one});
   return true;
 }
 

@@ -62,13 +62,24 @@ class FillFaces {
 
  private:
   using Edge = std::pair<std::uint32_t, std::uint32_t>;  // the smaller vertex first
+  // One of the three of a face.
+  struct Side {
+    std::uint32_t low, high, face;  // vertices
+    bool is_up;                     // from low to high
+    [[nodiscard]] Edge edge() const { return {low, high}; }
+  };
 
+  std::uint32_t add_face(const Triangle& t);
+  void change(std::uint32_t face, const Triangle& t);
+  void update_sides();
   void add_edges_of(const Triangle& t);
   [[nodiscard]] std::uint32_t beyond(std::uint32_t face, const InnerEdge& edge) const;
   bool flip(const InnerEdge& edge);
 
   SurfaceMesh& surface_;
   std::vector<Triangle> faces_;
+  std::vector<std::uint32_t> changed_;  // faces, some of them twice, since update_edges()
+  std::vector<Side> sides_;             // by edge, then by face
   std::vector<InnerEdge> inner_;
   std::set<Edge> edges_;  // all that ever were, also of other faces nearby
 };

@@ -1,5 +1,4 @@
 #include "core/filling/fit_to_threshold.h"
-#include "core/mesh/mesh_statistics.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -18,7 +16,6 @@
 #include "core/exact/direct_sum.h"
 #include "core/filling/closed_by_caps.h"
 #include "core/filling/fill_check.h"
-#include "core/filling/fill_faces.h"
 #include "core/filling/mesh_as_surface.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/exterior_edges.h"
@@ -182,63 +179,6 @@ TEST(FillCheck, TellsWhetherFacesAreLost) {
   EXPECT_TRUE(keeps(1.0));
   EXPECT_TRUE(keeps(0.98));
   EXPECT_FALSE(keeps(0.9));
-}
-
-TEST(FillFaces, AddsOctahedra) {
-  const TriangleMesh box = test::open_box();
-  SurfaceMesh surface{closed_by_caps(box, exterior_edges(box)), {}};
-  surface.sources.assign(12, 0);
-  for (const bool outward : {true, false}) {
-    FillFaces fill(surface);
-    const std::uint32_t before = fill.size();
-    const std::size_t edges = fill.inner_edges().size();
-    const double volume = mesh_statistics(fill.mesh()).signed_volume.value();
-    fill.add_octahedron({Vec3{3, 0, 0}, {6, 0, 0}, {4, -1, 0}, {4, 1, 0}, {4, 0, -2}, {4, 0, 1}}, outward);
-    fill.update_edges();
-    EXPECT_EQ(fill.size(), before + 8);
-    EXPECT_EQ(fill.inner_edges().size(), edges + 12);
-    const double added = mesh_statistics(fill.mesh()).signed_volume.value() - volume;
-    EXPECT_NEAR(added, outward ? 3.0 : -3.0, 1e-12);  // a sixth of 3 times 2 times 3
-    fill.put_back();
-  }
-}
-
-TEST(FillFaces, DividesAndFlips) {
-  const TriangleMesh box = test::open_box();
-  SurfaceMesh surface{closed_by_caps(box, exterior_edges(box)), {}};
-  surface.sources.assign(12, kHole);
-  std::fill_n(surface.sources.begin(), 10, 0);
-  FillFaces fill(surface);
-  ASSERT_EQ(fill.size(), 2U);
-  ASSERT_EQ(fill.inner_edges().size(), 1U);
-  EXPECT_EQ(surface.sources.size(), 10U);
-  fill.divide({0, 0}, {0.9, 0.8, 1.0});  // off the middle, so that flips are worth it
-  fill.update_edges();
-  EXPECT_EQ(fill.size(), 4U);
-  fill.divide({2, FillFaces::kNone}, fill.middle(2));
-  fill.update_edges();
-  EXPECT_EQ(fill.size(), 6U);
-  EXPECT_FALSE(fill.flip_edges().empty());
-  double area = 0.0;
-  for (std::uint32_t face = 0; face < fill.size(); ++face) {
-    EXPECT_GT(fill.normal(face).z, 0.0);
-    area += norm(fill.normal(face)) / 2;
-  }
-  EXPECT_NEAR(area, 1.0, 1e-14);
-  for (const FillFaces::InnerEdge& edge : fill.inner_edges()) {  // Delaunay: no corner is in a neighbour's circle
-    double opposite = 0.0;
-    for (const std::uint32_t face : {edge.left, edge.right}) {
-      const auto [a, b, c] = fill[face];
-      const std::uint32_t apex = a ^ b ^ c ^ edge.from ^ edge.to;
-      const Vec3 u = fill.at(edge.from) - fill.at(apex), v = fill.at(edge.to) - fill.at(apex);
-      opposite += std::atan2(norm(cross(u, v)), dot(u, v));
-    }
-    EXPECT_LE(opposite, std::numbers::pi + 1e-5);
-  }
-  EXPECT_TRUE(exterior_edges(fill.mesh()).empty());
-  fill.put_back();
-  EXPECT_EQ(surface.sources.size(), 16U);
-  EXPECT_EQ(std::ranges::count(surface.sources, kHole), 6);
 }
 
 }  // namespace

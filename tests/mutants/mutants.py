@@ -693,7 +693,7 @@ MUTANTS = [
     Mutant("flat_triangles_stay", "sides that corners are near to are split there", [
         ("core/arrangement/snap.cpp", "if (height > distance) return std::nullopt;", "if (height > 0.0 * distance) return std::nullopt;")]),
     Mutant("walls_stay", "triangles that are one in either direction are gone", [
-        ("core/arrangement/snap.cpp", "if (more * direction <= 0) continue;", "if (more * direction < 0) continue;")]),
+        ("core/arrangement/snap.cpp", "if (more * faces[n].direction <= 0) continue;", "if (more * faces[n].direction < 0) continue;")]),
     Mutant("corners_on_faces_stay", "faces that corners are near to are cut there", [
         ("core/arrangement/snap.cpp", "border.mesh.triangles[face] = {t[0], t[1], *v};", "continue;")]),
     Mutant("parts_meet_beside_nodes", "a part moves away from the others", [
@@ -720,6 +720,8 @@ MUTANTS = [
         ("core/filling/fill_check.cpp", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.5;", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.001;")]),
     Mutant("any_filling", "what closes holes must be near to the threshold", [
         ("core/filling/fill_check.cpp", "constexpr double kLittle = 1.0,", "constexpr double kLittle = 1e9,")]),
+    Mutant("sides_of_changed_faces_stay", "sides of faces that have changed are found anew", [
+        ("core/filling/fill_faces.cpp", "std::erase_if(sides_, [&](const Side& s) { return !is_old[s.face]; });", "")]),
     Mutant("edges_come_twice", "an edge that is there already is not made by a flip", [
         ("core/filling/fill_faces.cpp", "std::max(one, other)}).second) return false;", "std::max(one, other)}).second && false) return false;")]),
     Mutant("rounded_as_exact", "turns that doubles are not sure of are decided exactly", [

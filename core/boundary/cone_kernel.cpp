@@ -81,9 +81,10 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, 
     hn::Store(factors.re, d, re.data());
     hn::Store(factors.im, d, im.data());
     const std::uint64_t plain = bits_of(hn::And(is_not_near(factors), in_range));
+    const std::uint64_t done = trusted | rays.without_factor(n, view.projections);
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
       const Vec3 q = samples.query(i + lane);
-      if ((trusted >> lane) & 1U) continue;
+      if ((done >> lane) & 1U) continue;
       if ((plain >> lane) & 1U) {
         multiply_one(products, i + lane, re[lane], im[lane]);
       } else if (const auto f = edge_factor(chunk.vertex(n), chunk.vertex(n + 1), chunk.orientation[n] < 0.0, q,

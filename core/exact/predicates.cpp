@@ -2,7 +2,6 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 
-#include <algorithm>
 #include <cassert>
 
 #include "core/machine/floating_point.h"
@@ -24,8 +23,8 @@ int orientation_along(int axis, const Vec3& a, const Vec3& b, const Vec3& c) {
 
 bool in_box(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& q) {
   for (int axis = 0; axis < 3; ++axis) {
-    const auto [low, high] = std::minmax({a[axis], b[axis], c[axis]});
-    if (q[axis] < low || q[axis] > high) return false;
+    const double at = q[axis], of_a = a[axis], of_b = b[axis], of_c = c[axis];
+    if ((at < of_a && at < of_b && at < of_c) || (at > of_a && at > of_b && at > of_c)) return false;
   }
   return true;
 }

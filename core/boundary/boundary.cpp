@@ -5,7 +5,6 @@
 #include <cstdlib>
 #include <limits>
 
-#include "core/boundary/close_enclosure.h"
 #include "core/boundary/enclosure.h"
 #include "core/data/rule.h"
 #include "core/exact/predicates.h"
@@ -16,25 +15,27 @@ namespace {
 // The argument of an edge along the rays is 0 from everywhere, which the kernel would find out by predicates.
 bool projects_to_a_point(const Vec3& a, const Vec3& b) { return a.y == b.y && a.z == b.z; }
 
-constexpr long double kWideRounding = std::numeric_limits<long double>::epsilon() / 2;
-
 // Whether w, which differs from `value` by at most 1/8 and from -(turns of the cone) by an integer, is above
 // `critical` (1), below (-1), or indistinguishable from it (0); nothing where the bound is too large to tell.
-// `rounding`: u of Real.
-template <class Real>
-std::optional<int> side_of(double critical, double value, const TurnsWithin<Real>& cone, Real rounding) {
-  const auto rest = static_cast<long double>(cone.rest);
-  const auto n = static_cast<std::int64_t>(std::nearbyint(value + (static_cast<long double>(cone.whole) + rest)));
-  const Real whole = static_cast<Real>(n - cone.whole);
-  const Real w = whole - cone.rest;
-  const Real difference = w - static_cast<Real>(critical);
-  const auto magnitude = [](Real x) { return x < 0 ? -x : x; };
-  const Real bound = cone.bound + 2 * rounding * (magnitude(w) + magnitude(difference));
-  const bool is_close = bound <= Real(kIndistinguishable);  // not so where the bound is NaN
-  const Real error = is_close ? Real(kIndistinguishable) : bound;
+std::optional<int> side_of(double critical, double value, const TurnsWithin& cone) {
+  const auto n = static_cast<std::int64_t>(
+      std::nearbyint(value + (static_cast<double>(cone.whole) + static_cast<double>(cone.rest))));
+  const Quad w = static_cast<Quad>(n - cone.whole) - cone.rest;
+  const Quad difference = w - critical;
+  const Quad bound = cone.bound + 2 * kQuadRounding * (absolute(w) + absolute(difference));
+  const bool is_close = bound <= kIndistinguishable;  // not so where the bound is NaN
+  const Quad error = is_close ? kIndistinguishable : bound;
   if (difference > error) return 1;
   if (difference < -error) return -1;
   return is_close ? std::optional(0) : std::nullopt;
+}
+
+// `w` where it is there, else the number next to `critical`, or `critical`.
+double on_side(int side, double critical, double w) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  if (side == 0) return critical;
+  return side > 0 ? std::max(w, std::nextafter(critical, kInfinity))
+                  : std::min(w, std::nextafter(critical, -kInfinity));
 }
 
 DirectedEdge directed(const Vec3& from, const Vec3& to, bool reversed, std::int32_t multiplicity) {
@@ -116,16 +117,42 @@ bool Boundary::lies_in_plane_of_edges(const Vec3& q) const {
   return true;
 }
 
-double Boundary::settle(const Vec3& q, double w, double critical) const {
-  const bool multiple_of_half = std::nearbyint(2 * critical) == 2 * critical;
-  if (multiple_of_half && std::abs(w - critical) < 0.25 && lies_in_plane_of_edges(q)) return critical;
-  std::optional<int> side = side_of<long double>(critical, w, enclose_in_64_bits(groups_, q), kWideRounding);
-  if (!side) side = side_of<Quad>(critical, w, enclose_in_106_bits(groups_, q), kQuadRounding);
-  if (!side) side = side_of<Quad>(critical, w, enclose_in_113_bits(groups_, q), kQuadRounding);
-  if (!side || *side == 0) return critical;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  return *side > 0 ? std::max(w, std::nextafter(critical, kInfinity))
-                   : std::min(w, std::nextafter(critical, -kInfinity));
+void Boundary::settle(const SampleTile& samples, std::span<const ToSettle> doubtful, std::span<double> w) const {
+  std::array<ToSettle, kTile> others;
+  SampleTile places;
+  for (const auto& [i, critical] : doubtful) {
+    const bool multiple_of_half = std::nearbyint(2 * critical) == 2 * critical;
+    if (multiple_of_half && std::abs(w[i] - critical) < 0.25 && lies_in_plane_of_edges(samples.query(i))) {
+      w[i] = critical;
+    } else {
+      others[places.count] = {i, critical};
+      places.add(samples.query(i));
+    }
+  }
+  if (places.count == 0) return;
+  std::array<TurnsWithin, kTile> cones;
+  enclose_in_106_bits(groups_, places, {cones.data(), places.count});
+  for (std::size_t n = 0; n < places.count; ++n) {
+    const auto& [i, critical] = others[n];
+    std::optional<int> side = side_of(critical, w[i], cones[n]);
+    if (!side) side = side_of(critical, w[i], enclose_in_113_bits(groups_, places.query(n)));
+    w[i] = on_side(side.value_or(0), critical, w[i]);
+  }
+}
+
+void Boundary::bound_errors(SampleTile& samples, std::span<const double> w, std::span<const std::int64_t> crossings,
+                            std::span<double> bounds) const {
+  // Turns per edge: w2 is known so well that whoever checks a bound in 64 bits, or in 113 next to an edge, would find
+  // it violated by what the check rounds.
+  constexpr double kForChecks = 0x1p-64;
+  std::array<TurnsWithin, kTile> cones;
+  enclose(groups_, samples, {cones.data(), samples.count});
+  for (std::size_t i = 0; i < samples.count; ++i) {
+    const Quad w2 = static_cast<Quad>(crossings[i] - cones[i].whole) - cones[i].rest;
+    const Quad rounded = 4 * kQuadRounding * (std::abs(w[i]) + absolute(w2));
+    const Quad bound = absolute(w[i] - w2) + cones[i].bound + rounded + kForChecks * total_multiplicity_;
+    bounds[i] = std::nextafter(static_cast<double>(bound), std::numeric_limits<double>::infinity());
+  }
 }
 
 }  // namespace raycone

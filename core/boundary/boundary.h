@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/boundary/chain.h"
+#include "core/boundary/sample_tile.h"
 #include "core/data/triangle_mesh.h"
 #include "core/mesh/exterior_edges.h"
 
@@ -41,11 +42,22 @@ class Boundary {
   // All edges, as ExteriorEdge says, with positive multiplicities.
   [[nodiscard]] std::vector<DirectedEdge> directed_edges() const;
 
-  // `w`, a winding number of the mesh at q that is off by at most kMostDoubt, on the side of `critical` on which the
-  // true one is; `critical` itself where that cannot be told. Takes as long as thousands of winding numbers, but no
-  // longer than two where the answer is a half-integer because all exterior edges lie in one plane with q. Needs
+  // Which sample of a tile, and a number that its winding number may be on the wrong side of.
+  struct ToSettle {
+    std::size_t sample;
+    double critical;
+  };
+  // Moves w[sample], a winding number of the mesh there that is off by at most kMostDoubt, to the side of `critical` on
+  // which the true one is; to `critical` itself where that cannot be told. Takes some thirty times as long as winding
+  // numbers do, now and then a thousand times, but no longer than two where the answer is a half-integer because all
+  // exterior edges lie in one plane with a sample. Needs DefaultFloatingPoint. Thread-safe.
+  void settle(const SampleTile& samples, std::span<const ToSettle> doubtful, std::span<double> w) const;
+
+  // How far winding numbers of the mesh are off at most, turns: w[i] at sample i, whose ray has n = crossings[i]. That
+  // is |w - w2| and the bound of w2, which the cone in extended precision gives, whatever w comes from. Needs
   // DefaultFloatingPoint. Thread-safe.
-  [[nodiscard]] double settle(const Vec3& q, double w, double critical) const;
+  void bound_errors(SampleTile& samples, std::span<const double> w, std::span<const std::int64_t> crossings,
+                    std::span<double> bounds) const;
   static constexpr double kMostDoubt = 0.125;  // turns
 
  private:

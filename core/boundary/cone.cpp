@@ -13,12 +13,13 @@ namespace {
 // for 64 bits.
 constexpr std::int32_t kLargestInDouble = 32;
 
-void add_enclosed(const ChainGroup& group, const SampleTile& samples, std::span<Turns> cone) {
-  for (std::size_t i = 0; i < samples.count; ++i) {
-    const TurnsWithin<long double> turns = enclose_in_64_bits({&group, 1}, samples.query(i));
-    const long double whole = std::nearbyint(turns.rest);
-    cone[i].whole += turns.whole + static_cast<std::int64_t>(whole);
-    cone[i].rest += static_cast<double>(turns.rest - whole);
+void add_enclosed(const ChainGroup& group, SampleTile& samples, std::span<Turns> cone) {
+  std::array<TurnsWithin, kTile> turns;
+  enclose({&group, 1}, samples, {turns.data(), cone.size()});
+  for (std::size_t i = 0; i < cone.size(); ++i) {
+    const double whole = std::nearbyint(static_cast<double>(turns[i].rest));
+    cone[i].whole += turns[i].whole + static_cast<std::int64_t>(whole);
+    cone[i].rest += static_cast<double>(turns[i].rest - whole);
   }
 }
 

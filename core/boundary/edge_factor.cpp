@@ -41,40 +41,40 @@ Factor<double> generic_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
   return trusted ? plain : near_edge_factor<double>(a, b, q).factor;
 }
 
+bool on_one_side(double a, double b, double of) { return (a < of && b < of) || (a > of && b > of); }
+
+// tied_factor(), max(|re|, |im|) in [1, 2).
+std::optional<Factor<double>> rounded_tied_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
+  const std::optional<Factor<long double>> f = tied_factor<long double>(a, b, q);
+  if (!f) return std::nullopt;
+  const int exponent = -std::ilogb(std::max(std::abs(f->re), f->im));
+  return Factor<double>{static_cast<double>(std::scalbn(f->re, exponent)),
+                        static_cast<double>(std::scalbn(f->im, exponent))};
+}
+
 }  // namespace
 
 template <class Real>
-std::optional<Factor<Real>> unscaled_tied_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
+std::optional<Factor<Real>> tied_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
+  if (on_one_side(a.y, b.y, q.y) || on_one_side(a.z, b.z, q.z)) return std::nullopt;  // as most are
   const Real ay = Real(a.y) - Real(q.y), az = Real(a.z) - Real(q.z);
   const Real by = Real(b.y) - Real(q.y), bz = Real(b.z) - Real(q.z);
   const auto factor = [](Real re, Real im) { return Factor<Real>{re, im < 0 ? -im : im}; };
   // The ray passes through an end ahead, (s, P) = (0, -1); if q lies at it or beyond, the argument is 0.
   if (ay == 0 && az == 0) return a.x > q.x ? std::optional(factor(-by, bz)) : std::nullopt;
   if (by == 0 && bz == 0) return b.x > q.x ? std::optional(factor(-ay, az)) : std::nullopt;
-  // P_a and P_b lie on one line through 0: the signs of one coordinate tell whether on opposite sides.
-  const bool opposite = ay != 0 ? (ay < 0) != (by < 0) : (az < 0) != (bz < 0);
-  if (!opposite || meeting_side(a, b, q) <= 0) return std::nullopt;
-  return factor(-1, 0);
+  // P_a and P_b lie on one line through 0, which is between them.
+  return meeting_side(a, b, q) > 0 ? std::optional(factor(-1, 0)) : std::nullopt;
 }
 
-template <class Real>
-std::optional<Factor<Real>> tied_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
-  const std::optional<Factor<long double>> f = unscaled_tied_factor<long double>(a, b, q);
-  if (!f) return std::nullopt;
-  const int exponent = -std::ilogb(std::max(std::abs(f->re), f->im));
-  return Factor<Real>{static_cast<Real>(std::scalbn(f->re, exponent)), static_cast<Real>(std::scalbn(f->im, exponent))};
-}
-
-template std::optional<Factor<long double>> unscaled_tied_factor<long double>(const Vec3&, const Vec3&, const Vec3&);
-template std::optional<Factor<Quad>> unscaled_tied_factor<Quad>(const Vec3&, const Vec3&, const Vec3&);
-template std::optional<Factor<double>> tied_factor<double>(const Vec3&, const Vec3&, const Vec3&);
 template std::optional<Factor<long double>> tied_factor<long double>(const Vec3&, const Vec3&, const Vec3&);
+template std::optional<Factor<Quad>> tied_factor<Quad>(const Vec3&, const Vec3&, const Vec3&);
 
 std::optional<Factor<double>> edge_factor(const Vec3& a, const Vec3& b, bool reversed, const Vec3& q,
                                           const EdgeSide& side) {
   if (side.sign == 0) return std::nullopt;  // projects to a point
   const std::optional<Factor<double>> f =
-      side.tie ? tied_factor<double>(a, b, q) : std::optional(generic_factor(a, b, q));
+      side.tie ? rounded_tied_factor(a, b, q) : std::optional(generic_factor(a, b, q));
   if (!f) return std::nullopt;
   return scaled({f->re, std::copysign(f->im, reversed ? -side.sign : side.sign)});
 }

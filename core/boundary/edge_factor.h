@@ -15,14 +15,9 @@ namespace raycone {
                                                         const EdgeSide& side);
 
 // For an edge with D = 0 that does not project to a point (docs/method.md, "Exact zeros"): the line through the query
-// along the ray meets the edge's line. Re and |Im| of a number with the argument of z_ab(q), max(|re|, |im|) in [1, 2],
-// each rounded once to Real (and to 64 bits before); the sign of Im is that of edge_side(). Nothing where the argument
-// is 0.
-template <class Real>  // double or long double
-[[nodiscard]] std::optional<Factor<Real>> tied_factor(const Vec3& a, const Vec3& b, const Vec3& q);
-
-// As tied_factor(), but of any magnitude, each part rounded once.
+// along the ray meets the edge's line. Re and |Im| of a number with the argument of z_ab(q), of any magnitude, each
+// rounded once to Real; the sign of Im is that of edge_side(). Nothing where the argument is 0.
 template <class Real>  // long double or Quad, for their exponents: nothing over- or underflows
-[[nodiscard]] std::optional<Factor<Real>> unscaled_tied_factor(const Vec3& a, const Vec3& b, const Vec3& q);
+[[nodiscard]] std::optional<Factor<Real>> tied_factor(const Vec3& a, const Vec3& b, const Vec3& q);
 
 }  // namespace raycone

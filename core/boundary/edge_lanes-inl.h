@@ -15,6 +15,7 @@
 #include <span>
 
 #include "core/boundary/chain.h"
+#include "core/boundary/level_edges-inl.h"
 #include "core/boundary/product_lanes-inl.h"
 #include "core/boundary/sample_tile.h"
 #include "core/exact/predicates.h"
@@ -62,17 +63,6 @@ HWY_INLINE ProjectedEdge project(const ProjectedVertex& a, const ProjectedVertex
   const Lanes im = hn::Mul(determinant, orientation);
   return {hn::Add(hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)), hn::IfThenElse(sure, im, hn::NaN(d)),
           hn::CopySignToAbs(hn::Set(d, 1.0), im)};
-}
-
-// Where an edge is level with a ray as a whole and does not meet its line: it is a tie without a factor, as in
-// unscaled_tied_factor(). Flat meshes have many of these in their plane.
-HWY_INLINE LaneMask is_level_beside(Lanes a_y, Lanes a_z, Lanes b_y, Lanes b_z) {
-  const auto is_zero = [](Lanes v, Lanes w) { return hn::And(hn::Eq(v, hn::Zero(d)), hn::Eq(w, hn::Zero(d))); };
-  const auto same_side = [](Lanes v, Lanes w) {
-    return hn::Or(hn::And(hn::Gt(v, hn::Zero(d)), hn::Gt(w, hn::Zero(d))),
-                  hn::And(hn::Lt(v, hn::Zero(d)), hn::Lt(w, hn::Zero(d))));
-  };
-  return hn::Or(hn::And(is_zero(a_z, b_z), same_side(a_y, b_y)), hn::And(is_zero(a_y, b_y), same_side(a_z, b_z)));
 }
 
 // Steps that are taken together, sample by sample: edge n leads from vertex n to vertex n + 1. What is kept of them for

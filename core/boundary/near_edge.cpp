@@ -73,6 +73,5 @@ NearEdgeFactor<Real> near_edge_factor(const Vec3& a, const Vec3& b, const Vec3& 
 
 template NearEdgeFactor<double> near_edge_factor<double>(const Vec3&, const Vec3&, const Vec3&);
 template NearEdgeFactor<Quad> near_edge_factor<Quad>(const Vec3&, const Vec3&, const Vec3&);
-template NearEdgeFactor<long double> near_edge_factor<long double>(const Vec3&, const Vec3&, const Vec3&);
 
 }  // namespace raycone

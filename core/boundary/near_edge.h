@@ -25,7 +25,7 @@ struct NearEdgeFactor {
   Factor<Real> factor;
   Real error;
 };
-template <class Real>  // double, long double or Quad
+template <class Real>  // double or Quad
 [[nodiscard]] NearEdgeFactor<Real> near_edge_factor(const Vec3& a, const Vec3& b, const Vec3& q);
 
 }  // namespace raycone

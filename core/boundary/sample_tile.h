@@ -50,7 +50,7 @@ struct ProductTile {
   alignas(64) Tile re;
   alignas(64) Tile im;
   alignas(64) Tile passages;  // of the real axis: each +1 by a factor with Im >= 0, -1 by another; integers
-  alignas(64) Tile argument;  // of the whole product, as argument_in_turns() (core/boundary/angle.h)
+  alignas(64) Tile argument;  // of the whole product, turns
 
   // Passages of the positive and the negative real axis, with a sign each, become the turns that the argument has
   // completed, which are passages of the negative axis from above (+1) and from below (-1). A, B: passages from above

@@ -1,10 +1,5 @@
 #include "core/boundary/winding_number_engine.h"
 
-#include <cmath>
-#include <limits>
-
-#include "core/boundary/enclosure.h"
-
 namespace raycone {
 
 namespace {
@@ -22,14 +17,5 @@ double doubt_of_factors(double edge_factors) { return kDoubtPerEdge * edge_facto
 
 CompleteEngine::CompleteEngine(const Boundary& boundary, double edge_factors)
     : boundary_(boundary), doubt_(doubt_of_factors(edge_factors)) {}
-
-// |w - w2| + the bound of w2 = n - enclosure, rounded up.
-double enclosed_error(const Boundary& boundary, const Vec3& q, double w, std::int64_t crossings) {
-  constexpr long double u = std::numeric_limits<long double>::epsilon() / 2;
-  const TurnsWithin<long double> enclosure = enclose_in_64_bits(boundary.groups(), q);
-  const long double w2 = static_cast<long double>(crossings - enclosure.whole) - enclosure.rest;
-  const long double bound = std::abs(w - w2) + enclosure.bound + u * std::abs(w2);
-  return std::nextafter(static_cast<double>(bound * (1 + 8 * u)), std::numeric_limits<double>::infinity());
-}
 
 }  // namespace raycone

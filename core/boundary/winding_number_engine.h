@@ -14,7 +14,7 @@ namespace raycone {
 //
 // - Complete engines (CompleteEngine) sum up all that there is, in an order that the mesh alone gives. A value is off
 //   by rounding, and by nothing else.
-// - Bounded engines leave out what they can bound. That bound is part of doubt() and of error_bound().
+// - Bounded engines leave out what they can bound. That bound is part of doubt().
 //
 // Both give a query the same bits in any tile, on any thread, at any SIMD level, and w on the surface and at ties is
 // that of the perturbed query (core/exact/predicates.h). Calls may run concurrently; they need DefaultFloatingPoint.
@@ -37,28 +37,16 @@ class WindingNumberEngine {
   // rule (docs/method.md, "Rules"); at most Boundary::kMostDoubt. Closer to a critical value than this, a value is to
   // be settled (Boundary::settle()).
   [[nodiscard]] virtual double doubt() const = 0;
-
-  // How far `w`, which winding_numbers() has set for q, is off at most, turns: rigorous and close, all that doubt()
-  // bounds beforehand included. It may take a hundred times as long as the value. `crossings`: n.
-  [[nodiscard]] virtual double error_bound(const Vec3& q, double w, std::int64_t crossings) const = 0;
 };
-
-// How far `w` is off at most, a winding number of the mesh at q, whose ray has n = crossings: |w - w2| and the bound of
-// w2, which the cone in extended precision gives. It holds for the values of any engine. Needs DefaultFloatingPoint.
-[[nodiscard]] double enclosed_error(const Boundary& boundary, const Vec3& q, double w, std::int64_t crossings);
 
 // How far the argument of a product may be off, turns. `edge_factors`: how many edges' factors round in it, with their
 // multiplicities; a triangle counts as three.
 [[nodiscard]] double doubt_of_factors(double edge_factors);
 
-// What complete engines have in common: each factor rounds by a bounded number of turns, and the enclosure of the cone
-// in extended precision tells how far a value is off.
+// What complete engines have in common: each factor rounds by a bounded number of turns.
 class CompleteEngine : public WindingNumberEngine {
  public:
   [[nodiscard]] double doubt() const final { return doubt_; }
-  [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const final {
-    return enclosed_error(boundary_, q, w, crossings);
-  }
 
  protected:
   // As doubt_of_factors() says. `boundary` must outlive this.

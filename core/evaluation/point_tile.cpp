@@ -61,13 +61,17 @@ void PointTile::set_values(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
   for (std::size_t i = 0; i < count_; ++i) values_[indices_[i]] = w_[i];
 }
 
-void PointTile::set_diagnostics(const ScaledMesh& mesh) const {
+void PointTile::set_diagnostics(const ScaledMesh& mesh) {
+  std::array<double, kTile> bounds;
+  samples_.clear();
+  for (std::size_t i = 0; i < count_; ++i) samples_.add(queries_[i]);
+  mesh.bound_errors(samples_, {w_.data(), count_}, {n_.data(), count_}, {bounds.data(), count_});
   for (std::size_t i = 0; i < count_; ++i) {
     const std::size_t index = indices_[i];
     diagnostics_->crossings[index] = n_[i];
     diagnostics_->degenerate[index] = degenerate_[i].ties;
     diagnostics_->on_surface[index] = degenerate_[i].on_surface ? 1 : 0;
-    diagnostics_->error_bound[index] = mesh.error_bound(queries_[i], w_[i], n_[i]);
+    diagnostics_->error_bound[index] = bounds[i];
   }
 }
 

@@ -42,7 +42,7 @@ class PointTile {
   void find_crossings(const ScaledMesh& mesh);
   void find_candidates(const ScaledMesh& mesh);
   void set_values(const ScaledMesh& mesh, PointBlocks::Sums* sums);
-  void set_diagnostics(const ScaledMesh& mesh) const;
+  void set_diagnostics(const ScaledMesh& mesh);
 
   std::span<double> values_;
   const Diagnostics* diagnostics_;

@@ -41,10 +41,14 @@ void add_boundary_term(const ScaledMesh& mesh, const LatticeRows& rows, std::siz
 // Of the rows [begin, end). Precondition: diagnostics are asked for.
 void bound_errors(const ScaledMesh& mesh, const LatticeRows& rows, std::size_t begin, std::size_t end,
                   const ValueOutputs& out) {
-  const std::size_t samples = rows.xs.size();
-  for (std::size_t n = begin * samples; n < end * samples; ++n) {
-    const Vec3 query = rows.row(n / samples).query(n % samples);
-    out.diagnostics->error_bound[n] = mesh.error_bound(query, out.values[n], out.diagnostics->crossings[n]);
+  const std::size_t samples = rows.xs.size(), last = end * samples;
+  SampleTile tile;
+  for (std::size_t first = begin * samples; first < last; first += kTile) {
+    const std::size_t count = std::min(kTile, last - first);
+    tile.clear();
+    for (std::size_t n = first; n < first + count; ++n) tile.add(rows.row(n / samples).query(n % samples));
+    mesh.bound_errors(tile, out.values.subspan(first, count), out.diagnostics->crossings.subspan(first, count),
+                      out.diagnostics->error_bound.subspan(first, count));
   }
 }
 

@@ -193,9 +193,21 @@ void ScaledMesh::set_direct_values(SampleTile& samples, std::span<const std::int
   const std::size_t terms = direct_->counts_crossings() ? boundary_.exterior_edges() : mesh_.triangles.size();
   direct_terms_.fetch_add(values.size() * terms, std::memory_order_relaxed);
   if (settling == Settling::kLeft) return;
+  std::array<Boundary::ToSettle, kTile> doubtful;
+  std::size_t count = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (distance_to_half_integer(values[i]) > direct_->doubt()) continue;
-    values[i] = boundary_.settle(samples.query(i), values[i], std::floor(values[i]) + 0.5);
+    doubtful[count++] = {i, std::floor(values[i]) + 0.5};
+  }
+  if (count > 0) boundary_.settle(samples, {doubtful.data(), count}, values);
+}
+
+void ScaledMesh::bound_errors(SampleTile& samples, std::span<const double> values,
+                              std::span<const std::int64_t> crossings, std::span<double> bounds) const {
+  if (is_closed()) {
+    std::ranges::fill(bounds, 0.0);
+  } else {
+    boundary_.bound_errors(samples, values, crossings, bounds);
   }
 }
 

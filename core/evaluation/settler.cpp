@@ -16,17 +16,21 @@ void Settler::evaluate() {
   std::array<double, kTile> direct;
   mesh_.set_direct_values(samples_, {kNoCrossings.data(), count}, {direct.data(), count}, ScaledMesh::Settling::kLeft);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  std::array<Boundary::ToSettle, kTile> doubtful;
+  std::size_t doubts = 0;
   for (std::size_t i = 0; i < count; ++i) {
     double& value = values_[indices_[i]];
-    const double w = direct[i] + std::nearbyint(value - direct[i]);
-    if (!(std::abs(w - critical_) > mesh_.doubt_of_direct_values())) {
-      value = mesh_.boundary().settle(samples_.query(i), w, critical_);
-    } else if (w > critical_) {
+    direct[i] += std::nearbyint(value - direct[i]);
+    if (!(std::abs(direct[i] - critical_) > mesh_.doubt_of_direct_values())) {
+      doubtful[doubts++] = {i, critical_};
+    } else if (direct[i] > critical_) {
       value = std::max(value, std::nextafter(critical_, kInfinity));
     } else {
       value = std::min(value, std::nextafter(critical_, -kInfinity));
     }
   }
+  mesh_.boundary().settle(samples_, {doubtful.data(), doubts}, direct);
+  for (std::size_t n = 0; n < doubts; ++n) values_[indices_[doubtful[n].sample]] = direct[doubtful[n].sample];
   samples_.clear();
 }
 

@@ -47,9 +47,6 @@ class FarField final : public WindingNumberEngine {
   [[nodiscard]] double doubt() const override { return doubt_; }
   // doubt() of a far field with so many sources at most.
   [[nodiscard]] static double doubt(double tolerance, double sources);
-  [[nodiscard]] double error_bound(const Vec3& q, double w, std::int64_t crossings) const override {
-    return enclosed_error(boundary_, q, w, crossings);
-  }
 
   // What a sample takes, about, in units of an exterior edge of a direct sum; counted at some places in the mesh's box.
   [[nodiscard]] double cost() const { return cost_; }

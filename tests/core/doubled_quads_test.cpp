@@ -17,16 +17,16 @@
 namespace raycone {
 namespace {
 
-using Corners = std::array<std::uint32_t, 4>;
+using QuadCorners = std::array<std::uint32_t, 4>;
 
 // As readers cut convex polygons.
-void add_fan(const Corners& q, TriangleMesh& mesh) {
+void add_fan(const QuadCorners& q, TriangleMesh& mesh) {
   mesh.triangles.push_back({q[0], q[1], q[2]});
   mesh.triangles.push_back({q[0], q[2], q[3]});
 }
 
 // Of (0, 0, 0) to (1, 1, 1), outward.
-constexpr std::array<Corners, 6> kSides{
+constexpr std::array<QuadCorners, 6> kSides{
     {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
 
 TriangleMesh cube_corners() {
@@ -40,9 +40,9 @@ TriangleMesh cube_corners() {
 // `start`: where the second list begins, counted from the end of the first one.
 TriangleMesh double_sided(std::size_t start, bool reversed) {
   TriangleMesh mesh = cube_corners();
-  for (const Corners& side : kSides) add_fan(side, mesh);
-  for (const Corners& side : kSides) {
-    Corners copy;
+  for (const QuadCorners& side : kSides) add_fan(side, mesh);
+  for (const QuadCorners& side : kSides) {
+    QuadCorners copy;
     for (std::size_t n = 0; n < 4; ++n) copy[n] = side[(reversed ? 7 - n - start : n + start) % 4];
     add_fan(copy, mesh);
   }
@@ -143,7 +143,7 @@ TEST(DoubledQuads, AreNoWalls) {
   mesh.triangles.resize(12);
   for (int n = 0; n < 8; ++n) mesh.vertices.push_back(mesh.vertices[static_cast<std::size_t>(n)] + Vec3{1, 0, 0});
   for (std::uint32_t side = 0; side < 6; ++side) {
-    Corners copy;
+    QuadCorners copy;
     for (std::size_t n = 0; n < 4; ++n) copy[n] = 8 + kSides[side][(n + 1) % 4];
     add_fan(copy, mesh);
   }

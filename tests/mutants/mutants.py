@@ -131,9 +131,9 @@ MUTANTS = [
         ("core/boundary/edge_factor.cpp", "return a.x > q.x ?", "return true ?"),
         ("core/boundary/edge_factor.cpp", "return b.x > q.x ?", "return true ?")]),
     Mutant("meeting_side_ignored", "half a turn only if the edge meets the line ahead of the query", [
-        ("core/boundary/edge_factor.cpp", "if (!opposite || meeting_side(a, b, q) <= 0) return", "if (!opposite) return")]),
+        ("core/boundary/edge_factor.cpp", "meeting_side(a, b, q) > 0 ?", "true ?")]),
     Mutant("edge_at_query_counts", "no argument if the edge meets the line at the query", [
-        ("core/boundary/edge_factor.cpp", "meeting_side(a, b, q) <= 0) return", "meeting_side(a, b, q) < 0) return")]),
+        ("core/boundary/edge_factor.cpp", "meeting_side(a, b, q) > 0 ?", "meeting_side(a, b, q) >= 0 ?")]),
     Mutant("no_near_edge_factor", "near an edge z cancels, in any precision", [
         ("core/boundary/near_edge.h", "constexpr double kNearEdge = 0x1p-8;", "constexpr double kNearEdge = 0.0;")]),
     Mutant("near_edge_normal_in_double", "N must be known to full relative precision", [
@@ -150,7 +150,7 @@ MUTANTS = [
          "return true;")]),
 
     Mutant("all_level_edges_are_beside", "an edge that meets the ray's line has a factor", [
-        ("core/boundary/edge_lanes-inl.h", "hn::And(is_zero(a_z, b_z), same_side(a_y, b_y))", "is_zero(a_z, b_z)")]),
+        ("core/boundary/level_edges-inl.h", "hn::And(is_zero(a_z, b_z), same_side(a_y, b_y))", "is_zero(a_z, b_z)")]),
 
     # --- The sum over triangles ---
     Mutant("triangles_of_any_side", "the kernel multiplies only factors of triangles whose side is sure", [
@@ -197,18 +197,19 @@ MUTANTS = [
     # --- Rules ---
     Mutant("halves_by_rounding", "in the plane of an opening w is 1/2 exactly", [
         ("core/evaluation/scaled_mesh.cpp",
-         "    values[i] = boundary_.settle(samples.query(i), values[i], std::floor(values[i]) + 0.5);\n", "")]),
+         "if (count > 0) boundary_.settle(samples, {doubtful.data(), count}, values);", "")]),
     Mutant("doubt_too_small", "a value within its bound of a half-integer is looked at again", [
         ("core/boundary/winding_number_engine.cpp", "kDoubtPerEdge = 0x1p-41;", "kDoubtPerEdge = 0x1p-62;")]),
     Mutant("rim_is_plane", "on an exterior edge w is no multiple of 1/2", [
         ("core/boundary/boundary.cpp", "if (step.joined && on_segment(group.steps[i - 1].to, step.to, q)) return false;", "")]),
     Mutant("all_edges_in_one_plane", "one exterior edge out of the plane of the others counts", [
         ("core/boundary/boundary.cpp", "} else if (plane_side(*a, *b, *c, v) != 0) {\n        return;\n      }", "}")]),
-    Mutant("settled_in_80_bits", "64 bits cannot tell a half-integer from what is next to it", [
-        ("core/boundary/boundary.cpp", "if (!side) side = side_of<Quad>(critical, w, enclose_in_106_bits(groups_, q), kQuadRounding);\n", ""),
-        ("core/boundary/boundary.cpp", "if (!side) side = side_of<Quad>(critical, w, enclose_in_113_bits(groups_, q), kQuadRounding);\n", "")]),
+    Mutant("settled_in_106_bits", "113 bits tell what 106 cannot", [
+        ("core/boundary/boundary.cpp", "if (!side) side = side_of(", "if (!side && false) side = side_of(")]),
+    Mutant("settled_in_double", "double precision cannot tell a half-integer from what is next to it", [
+        ("core/boundary/boundary.cpp", "w[i] = on_side(side.value_or(0), critical, w[i]);", "")]),
     Mutant("settled_to_the_wrong_side", "a value is on the side of a half-integer on which w is", [
-        ("core/boundary/boundary.cpp", "return *side > 0 ? std::max", "return *side < 0 ? std::max")]),
+        ("core/boundary/boundary.cpp", "return side > 0 ? std::max", "return side < 0 ? std::max")]),
 
     # --- Magnitudes ---
     Mutant("mesh_not_scaled", "w(2^k M, 2^k q) is w(M, q) to the bit", [
@@ -283,9 +284,9 @@ MUTANTS = [
     Mutant("loops_take_part_in_others", "who waits for a loop within a loop takes no part in the outer one", [
         ("core/machine/threads.cpp", "isolated([&] { run_loop(count, grain, body); });", "run_loop(count, grain, body);")]),
     Mutant("error_bound_too_small", "the error bound is rigorous", [
-        ("core/boundary/winding_number_engine.cpp", "bound * (1 + 8 * u)", "bound * 0.001L")]),
+        ("core/boundary/boundary.cpp", "static_cast<double>(bound), std", "static_cast<double>(bound) * 0.001, std")]),
     Mutant("error_bound_of_the_sum_only", "the error bound holds for the value, not only for the wider sum", [
-        ("core/boundary/winding_number_engine.cpp", "bound = std::abs(w - w2) + enclosure.bound", "bound = enclosure.bound")]),
+        ("core/boundary/boundary.cpp", "bound = absolute(w[i] - w2) + cones[i].bound", "bound = cones[i].bound")]),
 
     # --- Points that are drawn ---
     Mutant("area_by_rounding", "areas are right for triangles of every shape and size", [
@@ -386,22 +387,23 @@ MUTANTS = [
     Mutant("runs_end_late", "crossings of runs are those of the samples before the crossing", [
         ("core/crossings/lattice_sums.h", "upper_bound(runs_, sample, {}, &RowPrefix::samples)",
          "lower_bound(runs_, sample, {}, &RowPrefix::samples)")]),
-    Mutant("close_enclosure_in_double", "differences to the query are exact", [
-        ("core/boundary/close_enclosure.cpp", "y(exact_sum(v.y, -q.y))", "y{v.y - q.y}")]),
-    Mutant("close_enclosure_loses_signs", "the sign of 0 tells half a turn from minus half a turn", [
-        ("core/boundary/close_enclosure.cpp", "DoubleDouble{std::copysign(kTiny, high)}", "DoubleDouble{kTiny}")]),
-    Mutant("close_enclosure_is_always_plain", "near an edge z cancels, in 106 bits, too", [
-        ("core/boundary/close_enclosure.cpp", "if (!(condition < kMostCondition)) return std::nullopt;",
-         "if (!(condition > 0)) return std::nullopt;")]),
-    Mutant("close_enclosure_bounds_nothing", "what a factor is off by grows with its condition", [
-        ("core/boundary/close_enclosure.cpp", "40 * e * condition", "0.0")]),
-    Mutant("close_enclosure_out_of_range", "what over- or underflows has no bound", [
-        ("core/boundary/close_enclosure.cpp", "square.high > 0x1p-200 && square.high < 0x1p200 && std::abs(x.high) < 0x1p100",
-         "true")]),
+    Mutant("enclosure_in_double", "differences to the query are exact", [
+        ("core/boundary/enclosure_kernel.cpp", "const Pair y = exact_sum(hn::Set(d, v.y), hn::Neg(q.y))", "const Pair y{hn::Sub(hn::Set(d, v.y), q.y), hn::Zero(d)}")]),
+    Mutant("enclosure_loses_signs", "the sign of 0 tells half a turn from minus half a turn", [
+        ("core/boundary/enclosure_kernel.cpp", "DoubleDouble{std::copysign(kTiny, high)}", "DoubleDouble{kTiny}"),
+        ("core/boundary/enclosure_kernel.cpp", "{hn::CopySign(tiny, x.high), hn::Zero(d)}", "{tiny, hn::Zero(d)}")]),
+    Mutant("enclosure_is_always_plain", "near an edge z cancels, in pairs of doubles, too", [
+        ("core/boundary/enclosure_kernel.cpp", "hn::Lt(condition, most_condition)", "hn::Gt(condition, hn::Zero(d))")]),
+    Mutant("enclosure_bounds_nothing", "what a factor is off by grows with its condition", [
+        ("core/boundary/enclosure_kernel.cpp", "hn::Mul(hn::Set(d, 40 * kRounding), condition)", "hn::Zero(d)")]),
+    Mutant("enclosure_trusts_any_sign", "the sign of a side is sure, or that of a predicate", [
+        ("core/boundary/enclosure_kernel.cpp", "hn::Gt(hn::Abs(im.high), doubt)", "hn::Eq(doubt, doubt)")]),
+    Mutant("enclosure_out_of_range", "what over- or underflows has no bound", [
+        ("core/boundary/enclosure_kernel.cpp", "hn::And(a.in_range, b.in_range)", "hn::Eq(condition, condition)")]),
     Mutant("settled_by_too_rough_sums", "what the direct sum cannot tell from a critical value is enclosed", [
         ("core/evaluation/settler.cpp", "> mesh_.doubt_of_direct_values()", ">= 0.0")]),
     Mutant("settled_without_whole_turns", "values tell the whole turns of the direct sum that settles them", [
-        ("core/evaluation/settler.cpp", " + std::nearbyint(value - direct[i])", "")]),
+        ("core/evaluation/settler.cpp", "direct[i] += std::nearbyint(value - direct[i]);", "")]),
     Mutant("sides_are_not_settled", "a value within the doubt of a threshold is settled", [
         ("core/evaluation/side_setter.h", "return raycone::may_be_across(w, threshold, doubt_);",
          "return raycone::may_be_across(w, threshold, -2 - doubt_);")]),

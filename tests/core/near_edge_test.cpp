@@ -1,37 +1,19 @@
-#include "core/boundary/angle.h"
+#include "core/boundary/near_edge.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "core/boundary/near_edge.h"
 #include "core/exact/quad.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
 
-TEST(ArgumentInTurns, AgreesWithTheArcTangent) {
-  constexpr double u = 0x1p-53;
-  test::Random random(1);
-  for (int i = 0; i < 200000; ++i) {
-    const double re = test::uniform(random, -1, 1) * std::exp2(test::uniform(random, -60, 60));
-    const double im = test::uniform(random, -1, 1);
-    const long double expected =
-        std::atan2(static_cast<long double>(im), static_cast<long double>(re)) / (2 * std::numbers::pi_v<long double>);
-    // Less than kArgumentError u, as roundings hardly ever all go one way: 5.5 u is the most that was found.
-    EXPECT_NEAR(argument_in_turns<double>(re, im), static_cast<double>(expected),
-                std::abs(static_cast<double>(expected)) * 6 * u);
-  }
-}
-
-TEST(ArgumentInTurns, KeepsTheSignBitOfIm) {
-  EXPECT_EQ(argument_in_turns<double>(-1, 0.0), 0.5);
-  EXPECT_EQ(argument_in_turns<double>(-1, -0.0), -0.5);
-  EXPECT_TRUE(std::signbit(argument_in_turns<double>(1, -0.0)));
-  EXPECT_EQ(argument_in_turns<double>(0.0, 3), 0.25);
-  EXPECT_EQ(argument_in_turns<double>(0.0, -3), -0.25);
+double in_turns(const Factor<double>& f) {
+  return static_cast<double>(std::atan2(static_cast<long double>(f.im), static_cast<long double>(f.re)) /
+                             (2 * std::numbers::pi_v<long double>));
 }
 
 // The argument of z_ab in turns by its definition, in 80-bit arithmetic: well conditioned away from the edge.
@@ -52,7 +34,7 @@ TEST(NearEdgeFactor, HasTheArgumentOfThePlainFormWhereThatIsWellConditioned) {
     const Vec3 q = test::uniform_point(random, box);
     const Factor<double> f = near_edge_factor<double>(a, b, q).factor;
     // 1e-13: what cancellation in |p| - p_x and near the edge leaves of 64 bits in the worst of 20 000 draws.
-    EXPECT_NEAR(argument_in_turns<double>(f.re, f.im), argument_by_definition(a, b, q), 1e-13);
+    EXPECT_NEAR(in_turns(f), argument_by_definition(a, b, q), 1e-13);
   }
 }
 
@@ -65,7 +47,7 @@ TEST(NearEdgeFactor, KeepsItsDigitsDownToTheSmallestDistances) {
       // magnitude.
       const Vec3 q{-0.5, distance * std::cos(angle), distance * std::sin(angle)};
       const Factor<double> f = near_edge_factor<double>(a, b, q).factor;
-      return argument_in_turns<double>(f.re, f.im);
+      return in_turns(f);
     };
     const double reference = argument_by_definition(a, b, {-0.5, 1e-8 * std::cos(angle), 1e-8 * std::sin(angle)});
     // 1e-3: at 1e-8 edge lengths cancellation leaves the reference 64 - 53 bits.

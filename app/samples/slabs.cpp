@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "app/samples/lattice_checks.h"
 #include "core/crossings/lattice_sums.h"
 
 namespace raycone {
@@ -32,8 +33,7 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
     case FieldKind::kDensity:
       return real_bytes * ((open ? samples : at_surface) + blocks_in_the_making);
     case FieldKind::kDistance: {
-      const std::int64_t longest = std::max({lattice.counts[0], lattice.counts[1], lattice.counts[2]});
-      const bool all = field.background / lattice.spacing.x >= 2 * static_cast<double>(longest);
+      const bool all = !cuts_off(field.background / lattice.spacing.x, lattice);
       return real_bytes * ((all ? samples : at_surface) + blocks_in_the_making);
     }
     case FieldKind::kVector:

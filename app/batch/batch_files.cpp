@@ -9,7 +9,6 @@
 #include <utility>
 #include <variant>
 
-#include "app/input/grid_lattice.h"
 #include "app/input/written_files.h"
 #include "app/process/usage_error.h"
 #include "io/files/file_identity.h"

@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <optional>
 #include <system_error>
 #include <utility>
 
 #include "app/batch/batch_marker.h"
-#include "app/input/grid_lattice.h"
 #include "app/process/messages.h"
 #include "app/process/signals.h"
 #include "app/process/stopwatch.h"

@@ -1,7 +1,6 @@
 // A small picture of a lattice: the middle layer across its shortest side.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <string>

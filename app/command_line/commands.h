@@ -1,7 +1,6 @@
 // All commands: what each accepts and how its values become a Command.
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "app/command_line/command_spec.h"

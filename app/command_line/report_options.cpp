@@ -1,8 +1,6 @@
 // raycone report: a page about a batch.
 #include "app/command_line/report_options.h"
 
-#include <vector>
-
 #include "app/command_line/common_options.h"
 #include "app/process/usage_error.h"
 

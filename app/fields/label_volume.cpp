@@ -1,7 +1,6 @@
 #include "app/fields/label_volume.h"
 
 #include <limits>
-#include <utility>
 
 #include "core/machine/threads.h"
 

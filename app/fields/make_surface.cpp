@@ -1,6 +1,5 @@
 #include "app/fields/make_surface.h"
 
-#include <algorithm>
 #include <optional>
 #include <stdexcept>
 #include <string>

@@ -1,6 +1,5 @@
 #include "app/fields/part_evaluator.h"
 
-#include <algorithm>
 #include <limits>
 #include <utility>
 

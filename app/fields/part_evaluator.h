@@ -1,11 +1,6 @@
 // Where one part of a job is: which samples the rule holds for.
 #pragma once
 
-#include <atomic>
-#include <cstdint>
-#include <span>
-#include <vector>
-
 #include "app/fields/field_evaluator.h"
 #include "app/input/mesh_input.h"
 #include "app/options/field_options.h"

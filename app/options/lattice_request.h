@@ -7,7 +7,7 @@
 #include <string>
 #include <variant>
 
-#include "core/data/triangle_mesh.h"
+#include "core/data/box.h"
 #include "core/data/vec3.h"
 
 namespace raycone {

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <system_error>
 
 #include "io/files/ascii.h"
 

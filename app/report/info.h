@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "core/data/box.h"
 #include "core/data/lattice.h"
-#include "core/data/triangle_mesh.h"
+#include "core/data/vec3.h"
 #include "core/data/warning.h"
 #include "core/mesh/mesh_statistics.h"
 

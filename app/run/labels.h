@@ -1,7 +1,6 @@
 // Labels: which part the rule holds for. Each part is evaluated as a mesh of its own.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/input/run_limits.h"
-#include "app/options/command.h"
+#include "app/options/info_command.h"
 #include "app/process/exit_code.h"
 
 namespace raycone {

@@ -1,6 +1,5 @@
 #include "app/run/run_surface.h"
 
-#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdint>

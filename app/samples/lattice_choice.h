@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "app/options/lattice_request.h"
+#include "core/data/box.h"
 #include "core/data/lattice.h"
-#include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
 #include "io/files/file_error.h"
 

@@ -1,15 +1,14 @@
 // From a box and the options of a slice to the pixels of its picture. The rules are those of docs/formats.md, "Slices".
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "app/options/slice_command.h"
 #include "app/picture/plane_view.h"
+#include "core/data/box.h"
 #include "core/data/lattice.h"
-#include "core/data/triangle_mesh.h"
 #include "core/data/warning.h"
 
 namespace raycone {

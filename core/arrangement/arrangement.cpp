@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <utility>
 
 #include "core/arrangement/contact.h"
 #include "core/arrangement/plane_arrangement.h"

@@ -1,7 +1,6 @@
 // Where two faces of a mesh meet.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include "core/exact/exact_points.h"

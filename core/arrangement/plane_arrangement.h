@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/arrangement/effort.h"
-#include "core/data/triangle_mesh.h"
 #include "core/exact/exact_points.h"
 
 namespace raycone {

@@ -1,7 +1,6 @@
 #include "core/boundary/caps.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <queue>

@@ -1,7 +1,6 @@
 // How fast winding numbers can change from place to place.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,7 +8,8 @@
 #include "core/boundary/caps.h"
 #include "core/boundary/change_kernel.h"
 #include "core/boundary/flat_piece.h"
-#include "core/data/triangle_mesh.h"
+#include "core/data/box.h"
+#include "core/data/vec3.h"
 
 namespace raycone {
 

@@ -9,7 +9,6 @@
 #include <hwy/highway.h>
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>

@@ -1,7 +1,6 @@
 #include "core/cells/edge_points.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <span>
 

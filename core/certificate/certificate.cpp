@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
 
 #include "core/cells/cell_set.h"
+#include "core/cells/surface_mesh.h"
 #include "core/exact/predicates.h"
 #include "core/intersections/vertex_graph.h"
 #include "core/machine/buckets.h"
@@ -18,7 +18,6 @@
 #include "core/machine/threads.h"
 #include "core/mesh/edge_uses.h"
 #include "core/mesh/exterior_edges.h"
-#include "core/mesh/triangle_runs.h"
 #include "core/mesh/vertex_faces.h"
 #include "core/mesh/weld.h"
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <utility>
 
 #include "core/cells/kuhn.h"
 #include "core/cells/surface_cells.h"

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/cells/surface_mesh.h"
 #include "core/data/triangle_mesh.h"
 
 namespace raycone {

@@ -7,7 +7,6 @@
 #include "core/cells/surface_in_cells.h"
 #include "core/cells/surface_mesh.h"
 #include "core/contour/face_points.h"
-#include "core/data/triangle_mesh.h"
 
 namespace raycone {
 

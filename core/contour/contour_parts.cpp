@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <utility>
 
 #include "core/contour/cell_polygons.h"
 #include "core/machine/first_touch.h"

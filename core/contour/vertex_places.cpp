@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/cells/source_plane.h"
 #include "core/contour/contour.h"
 #include "core/data/single_precision.h"
 #include "core/machine/sum_over.h"

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "core/crossings/row.h"
-#include "core/data/triangle_mesh.h"
+#include "core/data/vec3.h"
 
 namespace raycone {
 

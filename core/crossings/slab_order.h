@@ -1,7 +1,6 @@
 // Triangles by their place along an axis, so that a slab of a lattice need not look at all of them.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

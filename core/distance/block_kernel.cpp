@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 // Highway compiles what is between its markers once per SIMD level.
 #undef HWY_TARGET_INCLUDE

@@ -1,7 +1,6 @@
 // The triangle nearest to a point.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>

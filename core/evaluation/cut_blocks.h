@@ -1,7 +1,6 @@
 // Blocks of a lattice, with the caps and cones that cut them.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>

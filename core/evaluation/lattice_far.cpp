@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
-#include <vector>
 
 #include "core/boundary/edge_time.h"
 #include "core/data/sample_box.h"

@@ -1,7 +1,6 @@
 #include "core/evaluation/scaled_mesh.h"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/boundary/cone.h"

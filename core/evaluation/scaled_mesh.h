@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <utility>
-#include <vector>
 
 #include "core/boundary/boundary.h"
 #include "core/boundary/change_bound.h"

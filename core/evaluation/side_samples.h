@@ -1,7 +1,6 @@
 // The samples of a lattice whose sides of a rule are asked for.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 
-#include "core/data/diagnostics.h"
 #include "core/data/lattice.h"
 #include "core/data/rule.h"
 #include "core/evaluation/scaled_mesh.h"

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
 #include "core/boundary/triangle_lanes-inl.h"
 #include "core/far/shared_corners.h"

@@ -9,7 +9,7 @@
 #include "core/boundary/chain.h"
 #include "core/boundary/cone_kernel.h"
 #include "core/boundary/sample_tile.h"
-#include "core/data/triangle_mesh.h"
+#include "core/data/box.h"
 #include "core/far/far_kernel.h"
 #include "core/far/shared_corners.h"
 #include "core/far/source_tree.h"

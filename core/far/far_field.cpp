@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "core/boundary/solid_angles.h"
 #include "core/data/even_places.h"

@@ -5,7 +5,6 @@
 // is left is a sum over triangles. Those that are far from a sample act together, as multipoles (source_tree.h).
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <optional>

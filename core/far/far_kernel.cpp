@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <utility>
 
 // Highway compiles what is between its markers once per SIMD level.
 #undef HWY_TARGET_INCLUDE

@@ -1,6 +1,5 @@
 #include "core/far/harmonic_polynomial.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace raycone {

@@ -1,7 +1,6 @@
 #include "core/far/lattice_blocks.h"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <utility>
 

@@ -1,7 +1,6 @@
 // Sums of solid angles at all samples of a lattice: what is far from a block of samples acts on it as one polynomial.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -12,9 +11,7 @@
 
 #include "core/boundary/solid_angle_kernel.h"
 #include "core/data/sample_box.h"
-#include "core/data/triangle_mesh.h"
 #include "core/far/cover.h"
-#include "core/far/harmonic_polynomial.h"
 #include "core/far/lattice_axes.h"
 #include "core/far/shared_edges.h"
 #include "core/far/source_tree.h"

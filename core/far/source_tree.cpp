@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "core/data/triangle_mesh.h"
+#include "core/data/box.h"
 #include "core/machine/threads.h"
 
 namespace raycone {

@@ -1,7 +1,6 @@
 #include "core/filling/embedded_border.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>

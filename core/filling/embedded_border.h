@@ -3,8 +3,8 @@
 
 #include <optional>
 
+#include "core/cells/node_set.h"
 #include "core/cells/surface_mesh.h"
-#include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
 #include "core/surface/surface.h"
 

@@ -1,8 +1,6 @@
 #include "core/filling/fill_check.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>

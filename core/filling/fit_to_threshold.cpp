@@ -7,7 +7,6 @@
 #include <optional>
 #include <span>
 #include <tuple>
-#include <utility>
 
 #include "core/cells/line_roots.h"
 #include "core/certificate/certificate.h"

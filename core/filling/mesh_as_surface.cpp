@@ -9,7 +9,6 @@
 
 #include "core/cells/edge_roots.h"
 #include "core/cells/plane_tolerance.h"
-#include "core/cells/source_plane.h"
 #include "core/cells/surface_cells.h"
 #include "core/cells/surface_mesh.h"
 #include "core/cells/triangle_normals.h"

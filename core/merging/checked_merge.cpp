@@ -1,14 +1,11 @@
 #include "core/merging/checked_merge.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "core/cells/source_plane.h"
 #include "core/cells/surface_mesh.h"
 #include "core/certificate/certificate.h"
 #include "core/data/single_precision.h"

@@ -1,7 +1,6 @@
 // Which vertices of a surface merging leaves as they are, as what it makes of them has faults.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -1,7 +1,6 @@
 #include "core/merging/simplify.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>

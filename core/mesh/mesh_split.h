@@ -1,7 +1,6 @@
 // A mesh cut into the meshes of its parts.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

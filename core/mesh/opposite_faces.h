@@ -1,7 +1,6 @@
 // Faces that cancel.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <vector>
 

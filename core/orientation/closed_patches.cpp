@@ -5,6 +5,7 @@
 #include "core/exact/volume_sign.h"
 #include "core/machine/threads.h"
 #include "core/orientation/canonical_face.h"
+#include "core/orientation/nesting.h"
 #include "core/orientation/nesting_tree.h"
 
 namespace raycone {

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/data/triangle_mesh.h"
-#include "core/orientation/nesting.h"
+#include "core/data/vec3.h"
+#include "core/orientation/closed_surface.h"
 
 namespace raycone {
 

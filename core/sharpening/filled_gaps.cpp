@@ -1,7 +1,6 @@
 #include "core/sharpening/filled_gaps.h"
 
 #include <numeric>
-#include <utility>
 
 #include "core/cells/node_set.h"
 #include "core/cells/surface_mesh.h"

@@ -1,10 +1,8 @@
 // Sharp edges where a lattice does not see them.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "core/cells/surface_mesh.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,7 +11,6 @@
 #include "core/cells/cell_triangles.h"
 #include "core/cells/edge_points.h"
 #include "core/cells/plane_tolerance.h"
-#include "core/cells/source_plane.h"
 #include "core/cells/surface_cells.h"
 #include "core/cells/triangle_normals.h"
 #include "core/certificate/fault_places.h"

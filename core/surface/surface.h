@@ -10,7 +10,7 @@
 #include "core/cells/edge_roots.h"
 #include "core/cells/node_set.h"
 #include "core/cells/surface_mesh.h"
-#include "core/certificate/certificate.h"
+#include "core/data/lattice.h"
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
 

@@ -1,7 +1,6 @@
 #include "core/surface/thicken.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 
 #include "core/machine/threads.h"

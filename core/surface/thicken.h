@@ -7,7 +7,6 @@
 #include "core/cells/edge_roots.h"
 #include "core/cells/node_set.h"
 #include "core/cells/surface_cells.h"
-#include "core/data/triangle_mesh.h"
 #include "core/distance/distance.h"
 
 namespace raycone {

@@ -1,7 +1,6 @@
 #include "io/fields/image_writer.h"
 
 #include <bit>
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>

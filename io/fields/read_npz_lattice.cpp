@@ -5,9 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <memory>
 #include <string_view>
-#include <vector>
 
 #include "io/files/file_error.h"
 #include "io/files/input_buffer.h"

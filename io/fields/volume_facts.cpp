@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <string_view>
-#include <utility>
 
 #include "io/fields/read_image_lattice.h"
 #include "io/fields/read_npz_lattice.h"

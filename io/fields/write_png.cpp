@@ -6,7 +6,6 @@
 
 #include <csetjmp>
 #include <exception>
-#include <stdexcept>
 
 namespace raycone {
 namespace {

@@ -2,7 +2,6 @@
 // schema (Khronos Group, "glTF 2.0 Specification", 2021).
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>

@@ -3,7 +3,6 @@
 // followed wherever they lead (docs/formats.md).
 #include "io/mesh/gltf_resources.h"
 
-#include <algorithm>
 #include <filesystem>
 
 #include "io/files/ascii.h"

@@ -1,6 +1,5 @@
 // Wavefront OBJ: the polygons of a file; what concerns their looks, and curves, lines and points, is passed over.
 // Format: Wavefront "Object Files (.obj)", Advanced Visualizer manual, appendix B1.
-#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>

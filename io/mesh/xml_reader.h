@@ -1,7 +1,6 @@
 // XML, element by element: a thin layer over Expat.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <optional>

@@ -14,7 +14,6 @@
 #include <cstddef>
 #include <cstring>
 #include <memory>
-#include <new>
 #include <sstream>
 #include <string>
 #include <utility>

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/cells/surface_cells.h"
+#include "core/certificate/certificate.h"
 #include "core/machine/floating_point.h"
 #include "tests/core/surface_cases.h"
 #include "tests/support/exact_intersections.h"

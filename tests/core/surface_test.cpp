@@ -21,6 +21,7 @@
 
 #include "core/cells/edge_crossing.h"
 #include "core/cells/surface_cells.h"
+#include "core/certificate/certificate.h"
 #include "core/distance/distance.h"
 #include "core/filling/mesh_as_surface.h"
 #include "core/mesh/exterior_edges.h"

@@ -87,8 +87,8 @@ class CoverSums {
     const std::size_t small = triangles_.size();
     for (const std::uint32_t n : large) triangles_.push_back(tree.triangles()[n]);
     corners_ = SharedCorners(triangles_);
-    corners_.add_group(small, true);
-    corners_.add_group(triangles_.size() - small);
+    corners_.add_group(small, GroupLooks::kSmall);
+    corners_.add_group(triangles_.size() - small, GroupLooks::kAny);
   }
 
   CoverSums(const CoverSums&) = delete;  // corners_ refers to triangles_

@@ -25,8 +25,9 @@ template <class Views>
 void multiply_chunk_at_all(ProductTile& products, const SharedCorners::Chunk& chunk, const SampleTile& samples) {
   const auto every = hn::FirstN(d, hn::Lanes(d));
   Views views(chunk, samples);
+  const Looks looks = chunk.looks == GroupLooks::kSmall ? Looks::kSmallFromAll : Looks::kLarge;
   for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
-    multiply_chunk(products, chunk, views, samples, i, every, chunk.small ? Looks::kSmallFromAll : Looks::kLarge);
+    multiply_chunk(products, chunk, views, samples, i, every, looks);
   }
 }
 
@@ -111,11 +112,11 @@ class CornerSlots {
 
 }  // namespace
 
-void SharedCorners::add_group(std::size_t count, bool small) {
+void SharedCorners::add_group(std::size_t count, GroupLooks looks) {
   const std::size_t begin = places_.size();
   CornerSlots slots;
   for (std::size_t n = begin; n < begin + count; ++n) {
-    if ((n - begin) % kInChunk == 0) chunks_.push_back({n, corners_.size(), small});
+    if ((n - begin) % kInChunk == 0) chunks_.push_back({n, corners_.size(), looks});
     const std::size_t first = chunks_.back().corners;
     const SolidTriangle& t = triangles_[n];
     const std::uint8_t a = slots.place_of(t.a, corners_, first), b = slots.place_of(t.b, corners_, first),
@@ -126,10 +127,10 @@ void SharedCorners::add_group(std::size_t count, bool small) {
 
 SharedCorners::Chunk SharedCorners::chunk(std::size_t n) const {
   const Begin begin = chunks_[n];
-  const Begin end = n + 1 < chunks_.size() ? chunks_[n + 1] : Begin{places_.size(), corners_.size(), false};
+  const Begin end = n + 1 < chunks_.size() ? chunks_[n + 1] : Begin{places_.size(), corners_.size(), GroupLooks::kAny};
   const std::size_t count = end.triangles - begin.triangles;
   return {triangles_.subspan(begin.triangles, count), std::span(places_).subspan(begin.triangles, count),
-          std::span(corners_).subspan(begin.corners, end.corners - begin.corners), begin.small};
+          std::span(corners_).subspan(begin.corners, end.corners - begin.corners), begin.looks};
 }
 
 }  // namespace raycone

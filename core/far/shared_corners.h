@@ -13,6 +13,9 @@
 
 namespace raycone {
 
+// Whether the triangles of a group look small, looks_small_from(), from all samples that they are ever seen from.
+enum class GroupLooks { kAny, kSmall };
+
 // Triangles in chunks, each with the list of its corners: a sample looks at each corner once, which takes most of the
 // time of a triangle. The triangles must outlive this.
 class SharedCorners {
@@ -23,8 +26,8 @@ class SharedCorners {
   // Without groups yet: all triangles must be added.
   explicit SharedCorners(std::span<const SolidTriangle> triangles) : triangles_(triangles) {}
 
-  // The next `count` of the triangles. No chunk has triangles of two groups. `small`: looks_small_from() all samples.
-  void add_group(std::size_t count, bool small = false);
+  // The next `count` of the triangles. No chunk has triangles of two groups.
+  void add_group(std::size_t count, GroupLooks looks);
 
   struct Places {
     std::uint8_t a, b, c;  // of a triangle's corners among those of its chunk
@@ -34,7 +37,7 @@ class SharedCorners {
     std::span<const SolidTriangle> triangles;
     std::span<const Places> places;  // of each
     std::span<const Vec3> corners;   // in the order in which the triangles first need them
-    bool small;
+    GroupLooks looks;
   };
   [[nodiscard]] std::size_t chunks() const { return chunks_.size(); }
   [[nodiscard]] Chunk chunk(std::size_t n) const;
@@ -42,7 +45,7 @@ class SharedCorners {
  private:
   struct Begin {
     std::size_t triangles, corners;
-    bool small;
+    GroupLooks looks;
   };
   std::span<const SolidTriangle> triangles_;
   std::vector<Places> places_;

@@ -134,7 +134,7 @@ void SourceTree::build() {
   parallel_for_each(nodes_.size(), kPerTask, [&](std::size_t n) { measure(nodes_[n]); });
   for (SourceNode& node : nodes_) {
     node.first_chunk = static_cast<std::uint32_t>(corners_.chunks());
-    corners_.add_group(node.own_end - node.begin);
+    corners_.add_group(node.own_end - node.begin, GroupLooks::kAny);
     node.last_chunk = static_cast<std::uint32_t>(corners_.chunks());
     node.first_coefficient = coefficients;
     if (node.order > 0) coefficients += numbers_of(node.order);

@@ -52,11 +52,11 @@ Box box_of(const SampleTile& tile) {
   return box;
 }
 
-std::vector<double> sums_of(std::span<const SolidTriangle> triangles, bool small, const SampleTile& tile,
+std::vector<double> sums_of(std::span<const SolidTriangle> triangles, GroupLooks looks, const SampleTile& tile,
                             TileShape shape, SimdLevel level, Care care = Care::kFull) {
   const DefaultFloatingPoint guard;
   SharedCorners corners = SharedCorners(triangles);
-  corners.add_group(triangles.size(), small);
+  corners.add_group(triangles.size(), looks);
   ProductTile products;
   shared_corners_kernel(level, care)(corners, tile, shape, products);
   std::vector<double> sums(tile.count);
@@ -76,10 +76,11 @@ TEST(SharedCorners, RowsHaveTheBitsOfScatteredSamples) {
   for (const std::size_t count : {1U, 3U, 8U}) {
     const SampleTile tile = rows(count, {0.0, 0.0, 0.0});
     ASSERT_FALSE(all_look_small(triangles, box_of(tile)));
-    const std::vector<double> scattered = sums_of(triangles, false, tile, TileShape::kScattered, SimdLevel::kSse4);
+    const std::vector<double> scattered =
+        sums_of(triangles, GroupLooks::kAny, tile, TileShape::kScattered, SimdLevel::kSse4);
     for (const SimdLevel level : kLevels) {
-      EXPECT_EQ(sums_of(triangles, false, tile, TileShape::kInRows, level), scattered);
-      EXPECT_EQ(sums_of(triangles, false, tile, TileShape::kScattered, level), scattered);
+      EXPECT_EQ(sums_of(triangles, GroupLooks::kAny, tile, TileShape::kInRows, level), scattered);
+      EXPECT_EQ(sums_of(triangles, GroupLooks::kAny, tile, TileShape::kScattered, level), scattered);
     }
   }
 }
@@ -103,9 +104,11 @@ TEST(SharedCorners, RoughFactorsAreOffByNoMoreThanTheyMayBe) {
     for (int i = 0; i < 64; ++i) {
       tile.add(near + away * test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}}));
     }
-    const std::vector<double> full = sums_of(triangles, false, tile, TileShape::kScattered, SimdLevel::kBest);
+    const std::vector<double> full =
+        sums_of(triangles, GroupLooks::kAny, tile, TileShape::kScattered, SimdLevel::kBest);
     for (const SimdLevel level : kLevels) {
-      const std::vector<double> rough = sums_of(triangles, false, tile, TileShape::kScattered, level, Care::kRough);
+      const std::vector<double> rough =
+          sums_of(triangles, GroupLooks::kAny, tile, TileShape::kScattered, level, Care::kRough);
       largest = std::max(largest, test::largest_difference(full, rough));
     }
   }
@@ -119,19 +122,21 @@ TEST(SharedCorners, TrianglesThatLookSmallNeedNoSecondLook) {
   const std::vector<SolidTriangle> triangles = fan_at({0.44, 0.0, 0.1}, 0.1);
   const SampleTile tile = rows(8, {0.0, 0.0, 0.0});
   ASSERT_TRUE(all_look_small(triangles, box_of(tile)));
-  const std::vector<double> looked_at = sums_of(triangles, false, tile, TileShape::kScattered, SimdLevel::kSse4);
+  const std::vector<double> looked_at =
+      sums_of(triangles, GroupLooks::kAny, tile, TileShape::kScattered, SimdLevel::kSse4);
   const double doubt = doubt_of_factors(3 * static_cast<double>(triangles.size()));
-  const std::vector<double> sums = sums_of(triangles, true, tile, TileShape::kScattered, SimdLevel::kSse4);
+  const std::vector<double> sums =
+      sums_of(triangles, GroupLooks::kSmall, tile, TileShape::kScattered, SimdLevel::kSse4);
   for (std::size_t i = 0; i < sums.size(); ++i) EXPECT_NEAR(sums[i], looked_at[i], doubt);
   for (const SimdLevel level : kLevels) {
     for (const TileShape shape : {TileShape::kScattered, TileShape::kInRows}) {
-      EXPECT_EQ(sums_of(triangles, true, tile, shape, level), sums);
+      EXPECT_EQ(sums_of(triangles, GroupLooks::kSmall, tile, shape, level), sums);
     }
   }
   // The control: among the triangles, the second look is needed.
   const std::vector<SolidTriangle> around = fan_at({4 * kStep, 3 * kStep, 0.0}, 0.1);
-  EXPECT_NE(sums_of(around, true, tile, TileShape::kInRows, SimdLevel::kBest),
-            sums_of(around, false, tile, TileShape::kInRows, SimdLevel::kBest));
+  EXPECT_NE(sums_of(around, GroupLooks::kSmall, tile, TileShape::kInRows, SimdLevel::kBest),
+            sums_of(around, GroupLooks::kAny, tile, TileShape::kInRows, SimdLevel::kBest));
 }
 
 // Thousands of triangles around the samples: no turn must be lost.
@@ -143,7 +148,8 @@ TEST(SharedCorners, ManySmallTrianglesSumToTurns) {
   ASSERT_TRUE(all_look_small(triangles, box_of(tile)));
   const double doubt = doubt_of_factors(3 * static_cast<double>(triangles.size()));
   for (const SimdLevel level : kLevels) {
-    for (const double sum : sums_of(triangles, true, tile, TileShape::kScattered, level)) EXPECT_NEAR(sum, 1.0, doubt);
+    for (const double sum : sums_of(triangles, GroupLooks::kSmall, tile, TileShape::kScattered, level))
+      EXPECT_NEAR(sum, 1.0, doubt);
   }
 }
 

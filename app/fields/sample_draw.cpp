@@ -2,18 +2,14 @@
 
 #include <algorithm>
 
+#include "core/data/split_mix.h"
 #include "io/files/ascii.h"
 
 namespace raycone {
 namespace {
 
-// The output function of SplitMix64 (Steele, Lea, Flood 2014), which is one-to-one.
-std::uint64_t rank_of(std::uint64_t number) {
-  std::uint64_t z = (number + 1) * 0x9e3779b97f4a7c15;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-  return z ^ (z >> 31);
-}
+// No two samples have one rank.
+std::uint64_t rank_of(std::uint64_t number) { return split_mix((number + 1) * kSplitMixStep); }
 
 bool by_rank(const DrawnSample& a, const DrawnSample& b) { return a.rank < b.rank; }
 

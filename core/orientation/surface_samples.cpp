@@ -6,29 +6,24 @@
 #include <mutex>
 #include <utility>
 
+#include "core/data/split_mix.h"
 #include "core/exact/predicates.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
 namespace {
 
-std::uint64_t mixed(std::uint64_t state) {
-  state = (state ^ state >> 30) * 0xBF58476D1CE4E5B9;
-  state = (state ^ state >> 27) * 0x94D049BB133111EB;
-  return state ^ state >> 31;
-}
-
 std::uint64_t hash_of(const Vec3& p) {
   std::uint64_t state = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    state = mixed((state ^ std::bit_cast<std::uint64_t>(p[axis])) + 0x9E3779B97F4A7C15);
+    state = split_mix((state ^ std::bit_cast<std::uint64_t>(p[axis])) + kSplitMixStep);
   }
   return state;
 }
 
-// In (0, 1], as if random (splitmix64 over the coordinates; Steele, Lea, Flood 2014), whatever the order of corners.
+// In (0, 1], as if random, by the coordinates; whatever the order of corners.
 double number_of(const Triangle& t, const std::vector<std::uint64_t>& numbers) {
-  return static_cast<double>((mixed(numbers[t[0]] + numbers[t[1]] + numbers[t[2]]) >> 11) + 1) * 0x1p-53;
+  return static_cast<double>((split_mix(numbers[t[0]] + numbers[t[1]] + numbers[t[2]]) >> 11) + 1) * 0x1p-53;
 }
 
 double area_of(const Vec3& p, const Vec3& q, const Vec3& r) {

@@ -3,17 +3,10 @@
 #include <array>
 #include <cmath>
 
+#include "core/data/split_mix.h"
+
 namespace raycone {
 namespace {
-
-// SplitMix64 (Steele, Lea, Flood 2014): the step of its state, and its output function, which is one-to-one.
-constexpr std::uint64_t kStep = 0x9e3779b97f4a7c15;
-
-std::uint64_t mixed(std::uint64_t z) {
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111eb;
-  return z ^ (z >> 31);
-}
 
 // Natural logarithm of x > 0, to some 1e-16: 2 artanh z = 2 (z + z^3 / 3 + z^5 / 5 + ...) with z = (m - 1) / (m + 1),
 // |z| < 0.172, of the significand m.
@@ -35,9 +28,10 @@ double logarithm(double x) {
 
 }  // namespace
 
-Random::Random(std::uint64_t seed, std::uint64_t stream) : state_(mixed(mixed(seed + kStep) + stream * kStep)) {}
+Random::Random(std::uint64_t seed, std::uint64_t stream)
+    : state_(split_mix(split_mix(seed + kSplitMixStep) + stream * kSplitMixStep)) {}
 
-std::uint64_t Random::bits() { return mixed(state_ += kStep); }
+std::uint64_t Random::bits() { return split_mix(state_ += kSplitMixStep); }
 
 double Random::uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
 

@@ -307,7 +307,7 @@ MUTANTS = [
     Mutant("one_stream_for_all", "each point has a stream of random numbers of its own", [
         ("core/sampling/point_sampler.cpp", "Random random(seed_, number);", "Random random(seed_, number / 2);")]),
     Mutant("another_generator", "the generator is SplitMix64", [
-        ("core/sampling/random.cpp", "0x94d049bb133111eb", "0x94d049bb133111ed")]),
+        ("core/data/split_mix.h", "0x94D049BB133111EB", "0x94D049BB133111ED")]),
     Mutant("logarithm_of_few_terms", "normal numbers are those of the polar method", [
         ("core/sampling/random.cpp", "1.0 / 23, 1.0 / 21, 1.0 / 19, 1.0 / 17, 1.0 / 15, 1.0 / 13",
          "0.0, 0.0, 0.0, 0.0, 0.0, 0.0")]),

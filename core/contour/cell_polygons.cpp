@@ -273,21 +273,21 @@ bool CellPolygons::holds_face_points() {
   return true;
 }
 
-bool CellPolygons::add_polygon(const Run& run, std::optional<std::uint32_t> apex) {
-  PlanePolygon& polygon = polygons_[count_];
+// Of the corners of a run, which may be too few for one.
+PlanePolygon& CellPolygons::add_polygon(const Run& run) {
+  PlanePolygon& polygon = polygons_[count_++];
   polygon.source = run.plane->source;
   polygon.size = 0;
-  for (std::size_t i = 0; i < run.size; ++i) polygon.corners[polygon.size++] = loop_[run.corners[i]].vertex;
-  if (apex) polygon.corners[polygon.size++] = *apex;
-  if (polygon.size < 3) return false;
-  ++count_;
-  return true;
+  for (std::size_t i = 0; i < run.size; ++i) polygon.add(loop_[run.corners[i]].vertex);
+  return polygon;
 }
 
 bool CellPolygons::cone_runs() {
   if (run_count_ < 2) return false;
   for (std::size_t n = 0; n < run_count_; ++n) {
-    if (!add_polygon(runs_[n], kApex)) return false;
+    PlanePolygon& polygon = add_polygon(runs_[n]);
+    polygon.add(kApex);
+    if (polygon.size < 3) return false;
   }
   return true;
 }
@@ -312,7 +312,7 @@ bool CellPolygons::cut_off_runs() {
       return is_one_plane(before, behind) && loop_[run.corners[0]].square != loop_[run.corners[run.size - 1]].square;
     };
     while (n < run_count_ && !is_between()) ++n;
-    if (n == run_count_ || !add_polygon(runs_[n])) return false;
+    if (n == run_count_ || add_polygon(runs_[n]).size < 3) return false;
     Run& before = neighbour(run_count_ - 1);
     const Run& behind = neighbour(1);
     if (&before != &behind) {
@@ -330,7 +330,7 @@ bool CellPolygons::cut_off_runs() {
   // It goes around to the point of a face that it starts at, where its plane is on both sides of that.
   Run& last = runs_[0];
   if (last.corners[0] == last.corners[last.size - 1]) --last.size;
-  return add_polygon(last);
+  return add_polygon(last).size >= 3;
 }
 
 // Both cells at a square look at the same points in the same order.

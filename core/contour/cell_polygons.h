@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,6 +44,8 @@ struct PlanePolygon {
   std::int32_t source = kHole;
   std::array<std::uint32_t, kMostCorners> corners{};  // edge points, then face points, as vertices of contour() are
   std::size_t size = 0;
+
+  void add(std::uint32_t corner) { corners[size++] = corner; }
 };
 
 // The point of the diagonal of a face of a cell, in line with what the surface has before and behind it there.
@@ -115,7 +116,7 @@ class CellPolygons {
   bool cut_off_runs();
   bool cone_runs();
   [[nodiscard]] bool is_one_plane(const Run& a, const Run& b) const;
-  bool add_polygon(const Run& run, std::optional<std::uint32_t> apex = std::nullopt);
+  PlanePolygon& add_polygon(const Run& run);
   void find_diagonals();
   [[nodiscard]] bool is_in_plane(const EdgePoint& plane, const Vec3& p) const;
 

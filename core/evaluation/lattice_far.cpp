@@ -82,15 +82,18 @@ bool takes_far_field_on_lattice(const ScaledMesh& mesh) {
          mesh.far_field()->cost_on_lattice() < kSafety * static_cast<double>(edges);
 }
 
-double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_far_field) {
-  // Seconds on an AMD EPYC (Zen 4). The first two matter where edges are few.
-  constexpr double kSample = 1.2e-8;          // beside its edges
+// The constants of both are seconds on an AMD EPYC (Zen 4). Those of samples matter where edges are few.
+double direct_boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice) {
+  constexpr double kSample = 1.2e-8;  // beside its edges
+  if (mesh.is_closed()) return 0.0;
+  return (kSample + edge_seconds(mesh.options().level) * mesh.choice().direct_cost()) * lattice.samples();
+}
+
+double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice) {
   constexpr double kSampleOfBlocks = 1.0e-8;  // beside what its block sums
   constexpr double kSource = 1e-5;            // in the tree
   if (mesh.is_closed()) return 0.0;
   const double edge = edge_seconds(mesh.options().level), samples = lattice.samples();
-  const double direct = (kSample + edge * mesh.choice().direct_cost()) * samples;
-  if (!by_far_field) return direct;
   if (const std::optional<LatticeAxes> axes = axes_for_blocks(mesh, lattice)) {
     const double once = kBlocksOnLattice.fit + kBlocksOnLattice.tree * mesh.choice().direct_cost();
     return kSampleOfBlocks * samples + edge * (cost_in_blocks(mesh, *axes) * samples + once);
@@ -99,7 +102,7 @@ double boundary_seconds(const ScaledMesh& mesh, const Lattice& lattice, bool by_
     const auto sources = static_cast<double>(mesh.far_field()->sources().triangles().size());
     return edge * far_field_cost(mesh) * samples + kSource * sources;
   }
-  return direct;
+  return direct_boundary_seconds(mesh, lattice);
 }
 
 namespace {

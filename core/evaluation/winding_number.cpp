@@ -70,7 +70,8 @@ WindingNumberEvaluator::Estimate WindingNumberEvaluator::estimated_seconds(const
   const ScaledMesh& mesh = implementation_->scaled();
   const bool many = !mesh.is_closed() && mesh.choice().most_sources() > kMany;
   const double once = kPerFace * static_cast<double>(mesh.mesh().triangles.size());
-  return {once + kPerSample * lattice.samples() + boundary_seconds(mesh, lattice, !many), many};
+  const double boundary = many ? direct_boundary_seconds(mesh, lattice) : boundary_seconds(mesh, lattice);
+  return {once + kPerSample * lattice.samples() + boundary, many};
 }
 
 Terms WindingNumberEvaluator::terms() const { return implementation_->terms(); }

@@ -134,7 +134,7 @@ Rule parse_rule(const Values& values) {
 MeshOptions parse_meshes(const Values& values, const FieldOptions& field) {
   MeshOptions mesh = parse_mesh(values);
   if (values.given("--parts")) mesh.parts.by = parse_parts_by(values.text("--parts"));
-  mesh.parts.first_wins = values.given("--priority");
+  if (values.given("--priority")) mesh.parts.priority = PartPriority::kFirst;
   if (!mesh.further.empty() && !field.has(Field::kLabel)) {
     throw UsageError("unexpected operand " + mesh.further.front() + ", expected one mesh, or --field label");
   }

@@ -9,10 +9,10 @@
 
 namespace raycone {
 
-LabelCheck::LabelCheck(std::vector<DrawnSample> samples, const Rule& rule, bool first_wins)
+LabelCheck::LabelCheck(std::vector<DrawnSample> samples, const Rule& rule, PartPriority priority)
     : samples_(std::move(samples)),
       rule_(rule),
-      first_wins_(first_wins),
+      priority_(priority),
       labels_(samples_.size()),
       unresolved_(samples_.size()) {}
 
@@ -21,7 +21,8 @@ void LabelCheck::add(const TriangleMesh& part) {
   parallel_for_each(samples_.size(), [&](std::size_t n) {
     const std::optional<bool> inside = inside_by_definition(part, samples_[n].point, rule_);
     if (!inside) unresolved_[n] = 1;
-    if (inside.value_or(false) && !(first_wins_ && labels_[n] != 0)) labels_[n] = parts_;
+    const bool is_taken = labels_[n] != 0 && priority_ == PartPriority::kFirst;
+    if (inside.value_or(false) && !is_taken) labels_[n] = parts_;
   });
 }
 

@@ -46,7 +46,9 @@ void LabelVolume::for_rows(const LatticeBlock& block, const Visit& visit) const 
   });
 }
 
-void LabelVolume::add(const LatticeBlock& block, std::span<const std::uint8_t> inside, std::int32_t label, bool keeps) {
+void LabelVolume::add(const LatticeBlock& block, std::span<const std::uint8_t> inside, std::int32_t label,
+                      PartPriority priority) {
+  const bool keeps = priority == PartPriority::kFirst;
   const auto add_to = [&](auto& labels) {
     using Label = typename std::decay_t<decltype(labels)>::value_type;
     for_rows(block, [&](std::size_t where, std::size_t n, std::size_t count) {

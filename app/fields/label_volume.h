@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "app/options/mesh_options.h"
 #include "core/data/lattice.h"
 
 namespace raycone {
@@ -19,8 +20,9 @@ class LabelVolume {
   // Bytes that such a volume takes.
   [[nodiscard]] static double bytes(const Lattice& lattice, std::size_t parts);
 
-  // Gives `label` to the samples of a block that are `inside` (x fastest). With `keeps`, those that have one keep it.
-  void add(const LatticeBlock& block, std::span<const std::uint8_t> inside, std::int32_t label, bool keeps);
+  // Gives `label` to the samples of a block that are `inside` (x fastest). Where the first part has priority, those
+  // that have a label keep it.
+  void add(const LatticeBlock& block, std::span<const std::uint8_t> inside, std::int32_t label, PartPriority priority);
 
   void copy(const LatticeBlock& block, std::span<std::int32_t> labels) const;
   // Of a sample by its number, x fastest, then y, then z.

@@ -19,9 +19,12 @@ enum class PartsBy {
   kComponent,  // faces that are joined through vertices
 };
 
+// Which part gives its label to what several of them have.
+enum class PartPriority { kLast, kFirst };
+
 struct PartsOptions {
   PartsBy by = PartsBy::kFile;
-  bool first_wins = false;  // where parts overlap; else the last one does
+  PartPriority priority = PartPriority::kLast;
 };
 
 struct MeshOptions {

@@ -33,7 +33,7 @@ class LabelledParts {
   [[nodiscard]] std::size_t size() const { return parts_.size(); }
   [[nodiscard]] const Box& box() const { return parts_.box(); }
   [[nodiscard]] const TriangleMesh& whole() const { return parts_.whole(); }
-  [[nodiscard]] bool first_wins() const { return mesh_.parts.first_wins; }
+  [[nodiscard]] PartPriority priority() const { return mesh_.parts.priority; }
 
   // The next one, from the first to the last.
   [[nodiscard]] MeshToEvaluate next();

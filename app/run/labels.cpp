@@ -74,7 +74,7 @@ class LatticeLabels {
       parts_.count(evaluator.evaluate(lattice_, slab, samples, done_));
       if (!any_inside(flags_of(samples))) return;
       found = true;
-      volume_.add(slab, flags_of(samples), label, parts_.first_wins());
+      volume_.add(slab, flags_of(samples), label, parts_.priority());
     });
     return found;
   }
@@ -119,7 +119,7 @@ LabelVolume label_lattice(LabelledParts& parts, const PlacedLattice& lattice, co
   LatticeLabels labels(parts, lattice, field, run);
   SampleDraw draw(field.verify);
   draw.offer(lattice, whole(lattice.grid), {});
-  LabelCheck check(draw.samples(), field.rule, parts.first_wins());
+  LabelCheck check(draw.samples(), field.rule, parts.priority());
   for (std::size_t n = 0; n < parts.size(); ++n) {
     MeshToEvaluate part = parts.next();
     if (field.verify > 0) timed(report.seconds.verify, [&] { check.add(part.mesh); });
@@ -157,6 +157,7 @@ PointLabels::PointLabels(LabelledParts& parts, const FieldOptions& field, double
 void PointLabels::evaluate(std::span<const Vec3> points, std::span<std::int32_t> labels) {
   std::ranges::fill(labels, 0);
   constexpr std::size_t kWorthSorting = 16;  // parts
+  const bool keeps_labels = parts_.priority() == PartPriority::kFirst;
   const PointsByX by_x(points, evaluators_.size() > kWorthSorting);
   std::vector<Vec3> reached;
   std::vector<std::size_t> numbers;  // of these among the points
@@ -165,7 +166,7 @@ void PointLabels::evaluate(std::span<const Vec3> points, std::span<std::int32_t>
     reached.clear();
     numbers.clear();
     for (const std::uint32_t n : by_x.between(evaluator.reach_along_x())) {
-      if (!evaluator.reaches(points[n]) || (parts_.first_wins() && labels[n] != 0)) continue;
+      if (!evaluator.reaches(points[n]) || (keeps_labels && labels[n] != 0)) continue;
       reached.push_back(points[n]);
       numbers.push_back(n);
     }
@@ -187,7 +188,7 @@ void PointLabels::finish() {
   parts_.finish(counts_);
   if (field_.verify == 0) return;
   timed(run_.report.seconds.verify, [&] {
-    LabelCheck check(draw_.samples(), field_.rule, parts_.first_wins());
+    LabelCheck check(draw_.samples(), field_.rule, parts_.priority());
     for (const TriangleMesh& mesh : meshes_) check.add(mesh);
     std::vector<std::int32_t> labels;
     for (const DrawnSample& sample : check.samples()) labels.push_back(*sample.label);

@@ -34,7 +34,7 @@ std::vector<std::function<void(Command&)>> common_changes() {
           },
           [](Command& c) { c.mesh.lists = {"list"}; },
           [](Command& c) { c.mesh.parts.by = PartsBy::kComponent; },
-          [](Command& c) { c.mesh.parts.first_wins = true; },
+          [](Command& c) { c.mesh.parts.priority = PartPriority::kFirst; },
           [](Command& c) { c.run.threads = 3; },
           [](Command& c) { c.run.memory_limit = 1'000'000'000'000; },
           [](Command& c) { c.run.timeout = 0.5; },

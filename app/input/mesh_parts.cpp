@@ -54,12 +54,12 @@ std::vector<std::uint32_t> group_of_each(const FaceGroups& groups, std::size_t t
 
 }  // namespace
 
-MeshParts::MeshParts(const MeshOptions& options, const RunLimits& limits, bool whole)
+MeshParts::MeshParts(const MeshOptions& options, const RunLimits& limits, WholeMesh whole)
     : options_(options), limits_(limits) {
   files_.resize(1 + options.further.size());
   files_.front().read.path = options.path;
   for (std::size_t n = 0; n < options.further.size(); ++n) files_[n + 1].read.path = options.further[n];
-  if (whole || options.normalize || files_.size() == 1) {
+  if (whole != WholeMesh::kUnused || options.normalize || files_.size() == 1) {
     keep_all();
   } else {
     keep_some();

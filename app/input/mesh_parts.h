@@ -17,6 +17,13 @@
 
 namespace raycone {
 
+// What the mesh of all parts together is wanted for.
+enum class WholeMesh {
+  kUnused,
+  kShown,      // drawn
+  kEvaluated,  // or drawn from: warnings and counts of orientation are about it
+};
+
 class MeshParts {
  public:
   struct File {
@@ -27,11 +34,11 @@ class MeshParts {
     std::vector<Warning> warnings;
   };
 
-  // Reads all files once, so that what is wrong with one is known before the work. `whole`: that mesh is wanted, too.
-  // Several files are kept as far as they are small, and read again when their turn comes, so that memory does not grow
-  // with their number; but for `whole`, or to normalize them, they are all kept. Throws as read_mesh_file(), and
-  // InputError where groups are asked for and the format has none. `options` and `limits` must outlive this.
-  MeshParts(const MeshOptions& options, const RunLimits& limits, bool whole);
+  // Reads all files once, so that what is wrong with one is known before the work. Several files are kept as far as
+  // they are small, and read again when their turn comes, so that memory does not grow with their number; but where the
+  // mesh of all is used, or to normalize them, they are all kept. Throws as read_mesh_file(), and InputError where
+  // groups are asked for and the format has none. `options` and `limits` must outlive this.
+  MeshParts(const MeshOptions& options, const RunLimits& limits, WholeMesh whole);
 
   [[nodiscard]] const std::vector<File>& files() const { return files_; }
   [[nodiscard]] const Matrix4& transform() const { return transform_; }
@@ -44,7 +51,7 @@ class MeshParts {
   [[nodiscard]] const std::string& name(std::size_t part) const { return names_[part]; }
   [[nodiscard]] std::size_t file_of(std::size_t part) const { return files_.size() > 1 ? part : 0; }
 
-  // All parts together. Only where it was asked for, or where there is one file.
+  // All parts together. Only where it is used, or where there is one file.
   [[nodiscard]] const TriangleMesh& whole() const { return split_->whole(); }
 
   // Welded, but not yet oriented. Warnings about the welding are appended to `warnings`. Throws as read_mesh_file(),

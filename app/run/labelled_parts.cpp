@@ -27,9 +27,11 @@ std::uint64_t reversed_components(const MeshDefects& defects) {
 
 LabelledParts::LabelledParts(MeshRun& run, const MeshOptions& mesh, const FieldOptions& field,
                              const std::vector<WrittenFile>& written, WholeMesh whole)
-    : run_(run), mesh_(mesh), field_(field), whole_(whole), parts_(timed(run.report.seconds.read, [&] {
-        return MeshParts(mesh, run.limits(), whole != WholeMesh::kUnused);
-      })) {
+    : run_(run),
+      mesh_(mesh),
+      field_(field),
+      whole_(whole),
+      parts_(timed(run.report.seconds.read, [&] { return MeshParts(mesh, run.limits(), whole); })) {
   RunReport& report = run.report;
   report.transform = parts_.transform();
   for (const MeshParts::File& file : parts_.files()) {

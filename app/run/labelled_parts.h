@@ -16,13 +16,6 @@
 
 namespace raycone {
 
-// What the mesh of all parts together is wanted for.
-enum class WholeMesh {
-  kUnused,
-  kShown,      // drawn
-  kEvaluated,  // or drawn from: warnings and counts of orientation are about it
-};
-
 // The parts of a run, made ready one after the other. The report learns of them, their user of what is wrong with them.
 class LabelledParts {
  public:

@@ -48,7 +48,7 @@ TEST(MeshParts, BuffersThatChangedBetweenTwoReadingsAreNoticed) {
   options.further = {directory / "b.gltf"};
   options.parts.by = PartsBy::kFile;
   const RunLimits limits(RunOptions{}, options.path);
-  MeshParts parts(options, limits, false);
+  MeshParts parts(options, limits, WholeMesh::kUnused);
   std::vector<Warning> warnings;
   EXPECT_EQ(parts.part(1, warnings).triangles.size(), 1U);
   write_text(directory / "b.bin", corners(2));

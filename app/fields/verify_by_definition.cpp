@@ -10,6 +10,7 @@
 #include "core/exact/direct_distance.h"
 #include "core/exact/direct_gradient.h"
 #include "core/exact/direct_sum.h"
+#include "core/exact/quad.h"
 #include "core/machine/threads.h"
 #include "io/files/ascii.h"
 
@@ -18,8 +19,6 @@ namespace {
 
 // Errors of direct sums are far smaller than this part of the accuracy, whatever the mesh.
 constexpr double kResolved = 1e-3;
-
-Quad absolute(Quad x) { return x < 0 ? -x : x; }
 
 // What a sample's numbers are, in 113 bits.
 struct Truth {

@@ -26,7 +26,8 @@ bool checked_sharpen(SurfaceMesh& surface, const TriangleMesh& input, const Tria
     sharpener.for_each_target([&](std::uint32_t vertex, const Vec3& p) {
       if (is_beside(p, misplaced)) near.vertices.push_back(vertex);
     });
-    change = sharpener.keep(near.vertices, round >= kPartialRounds);
+    using Kept = Sharpener::Kept;
+    change = sharpener.keep(near.vertices, round < kPartialRounds ? Kept::kPulled : Kept::kStrips);
     if (change.changes_nothing()) break;  // such faults do not come from pulls
   }
   sharpener.undo();

@@ -227,7 +227,7 @@ SurfaceEdit Sharpener::sharpen() {
   return edit;
 }
 
-SurfaceEdit Sharpener::keep(const std::vector<std::uint32_t>& vertices, bool all) {
+SurfaceEdit Sharpener::keep(const std::vector<std::uint32_t>& vertices, Kept kept) {
   std::vector<std::uint8_t> named(strip_vertices_.size(), 0), anew(parts_.size(), 0);
   for (const std::uint32_t vertex : vertices) {
     if (vertex >= place_.size() || place_[vertex] == kNoPlace) continue;
@@ -244,8 +244,9 @@ SurfaceEdit Sharpener::keep(const std::vector<std::uint32_t>& vertices, bool all
   // Where that changes nothing, more is kept: what has faults may not stay as it is.
   const State before = now_;
   std::vector<std::uint32_t> left = parts;
-  for (int kept = 1; !left.empty() && kept <= kKeptFrom + 1; ++kept) {
-    for (const std::uint32_t part : left) keep_in(parts_[part], named, all || kept > kKeptFrom);
+  for (int round = 1; !left.empty() && round <= kKeptFrom + 1; ++round) {
+    if (round > kKeptFrom) kept = Kept::kStrips;
+    for (const std::uint32_t part : left) keep_in(parts_[part], named, kept);
     pull(left);
     std::erase_if(left, [&](std::uint32_t part) { return has_changed(parts_[part], before); });
   }
@@ -254,9 +255,9 @@ SurfaceEdit Sharpener::keep(const std::vector<std::uint32_t>& vertices, bool all
   return edit;
 }
 
-void Sharpener::keep_in(const Part& part, const std::vector<std::uint8_t>& named, bool all) {
+void Sharpener::keep_in(const Part& part, const std::vector<std::uint8_t>& named, Kept kept) {
   for (std::uint32_t v = part.first_vertex; v < part.first_vertex + part.vertices; ++v) {
-    if (all) kept_[v] = kKeptFrom;
+    if (kept == Kept::kStrips) kept_[v] = kKeptFrom;
     if (named[v] != 0) kept_[v] = static_cast<std::uint8_t>(std::min<int>(kept_[v] + 1, kKeptFrom));
   }
 }

@@ -41,11 +41,13 @@ class Sharpener {
   // Pulls. Returns what that has changed. What is left of strips may turn over on the way, and may then cross other
   // faces.
   SurfaceEdit sharpen();
-  // Makes the surface what it is if vertices are not pulled: those that were pulled into one of `vertices`, and these;
-  // and all that hang together with them by faces of strips, if `all`. Strips that hang together with them are pulled
-  // anew, and do not turn over. Numbers of other vertices are ignored. Returns what that has changed, with the faces at
-  // `vertices` in any case, so that faults there are looked for again.
-  SurfaceEdit keep(const std::vector<std::uint32_t>& vertices, bool all);
+  // What keep() leaves where it was: vertices that were pulled into one of those named, and these; or all that hang
+  // together with them by faces of strips.
+  enum class Kept { kPulled, kStrips };
+  // Makes the surface what it is if vertices at `vertices` are not pulled. Strips that hang together with them are
+  // pulled anew, and do not turn over. Numbers of other vertices are ignored. Returns what that has changed, with the
+  // faces at `vertices` in any case, so that faults there are looked for again.
+  SurfaceEdit keep(const std::vector<std::uint32_t>& vertices, Kept kept);
 
   // Either of these comes last. Back to the surface as it was at first, without spare vertices and faces.
   void undo();
@@ -93,7 +95,7 @@ class Sharpener {
   void add_faces(const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips);
   [[nodiscard]] std::uint32_t part_of_face(const Triangle& t) const;
   void pull(const std::vector<std::uint32_t>& parts);
-  void keep_in(const Part& part, const std::vector<std::uint8_t>& named, bool all);
+  void keep_in(const Part& part, const std::vector<std::uint8_t>& named, Kept kept);
   [[nodiscard]] bool has_changed(const Part& part, const State& before) const;
   [[nodiscard]] SurfaceEdit changes_of(const std::vector<std::uint32_t>& parts, const State& before,
                                        const std::vector<std::uint8_t>& named) const;

@@ -78,10 +78,10 @@ TEST(Sharpening, PullsNothingOffTheMesh) {
   EXPECT_EQ(of_whole.pulls(), 1U);  // the gap between four planes
   EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 2.0, 1e-12);
   // One end of the cut stays: so does what would be pulled into it. The other one is pulled.
-  of_whole.keep({0}, false);
+  of_whole.keep({0}, Sharpener::Kept::kPulled);
   EXPECT_EQ(of_whole.pulls(), 1U);
   EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 2.0 - 0.005 / 3, 1e-12);
-  of_whole.keep({0}, true);
+  of_whole.keep({0}, Sharpener::Kept::kStrips);
   EXPECT_EQ(of_whole.pulls(), 0U);
   EXPECT_EQ(first_of(surface.mesh, cut).triangles, cut.triangles);
   EXPECT_EQ(first_of(surface.mesh, cut).vertices, cut.vertices);
@@ -103,12 +103,12 @@ TEST(Sharpening, PullsTheStripsAnewThatHaveWhatIsKept) {
   Sharpener sharpener(surface, whole, TriangleNormals(whole), distance, {1e-9, 0.2, false});
   sharpener.sharpen();
   ASSERT_EQ(sharpener.pulls(), 2U);
-  const SurfaceEdit change = sharpener.keep({0, 1, 2, 3}, false);
+  const SurfaceEdit change = sharpener.keep({0, 1, 2, 3}, Sharpener::Kept::kPulled);
   EXPECT_EQ(sharpener.pulls(), 1U);
   EXPECT_EQ(change.vertices.size(), 2U);
   EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 4.0 - 0.005, 1e-12);
   // Faults that are left where nothing changes any more would else not be found.
-  const SurfaceEdit no_change = sharpener.keep({0, 1, 2, 3}, false);
+  const SurfaceEdit no_change = sharpener.keep({0, 1, 2, 3}, Sharpener::Kept::kPulled);
   EXPECT_FALSE(change.changes_nothing());
   EXPECT_TRUE(no_change.changes_nothing());
   EXPECT_TRUE(std::ranges::find(no_change.faces, 0U) != no_change.faces.end());

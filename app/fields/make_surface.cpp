@@ -39,7 +39,7 @@ auto with_surface_errors(const std::string& name, const SurfaceOptions& options,
   try {
     return make();
   } catch (const LatticeTooFine& error) {
-    const char* const other_format = options.single_precision ? ", or write PLY" : "";
+    const char* const other_format = options.precision == VertexPrecision::kSingle ? ", or write PLY" : "";
     throw LimitError(name + ": " + error.what() + "; see --resolution and --normalize" + other_format);
   } catch (const LatticeOutOfRange& error) {
     throw LimitError(name + ": " + error.what() + "; see --scale");
@@ -141,7 +141,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   });
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options), tally, {}};
   if (options.at_stage) options.at_stage("measuring");
-  const double farthest = farthest_kept(mesh, lattice, closed.own.has_value(), options.single_precision);
+  const double farthest = farthest_kept(mesh, lattice, closed.own.has_value(), options.precision);
   DroppedSamples samples(made.surface, inside, options.thickness, farthest + options.thickness + options.simplify,
                          closed.own ? std::move(closed.own->held) : std::vector<bool>());
   const DroppedArea dropped = dropped_area(mesh, samples);

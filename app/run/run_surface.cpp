@@ -56,7 +56,7 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
 
   const std::vector<ExteriorEdge> edges = run.take_edges();
   SurfaceOptions options{command.rule, command.thickness, command.merge_planes, command.simplify,
-                         is_single_precision(command.format)};
+                         vertex_precision(command.format)};
   options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
   MadeSurface made = timed(report.seconds.evaluate, [&] {

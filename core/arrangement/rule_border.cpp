@@ -8,7 +8,7 @@
 #include "core/arrangement/arranged_patches.h"
 #include "core/arrangement/arrangement.h"
 #include "core/arrangement/winding_in_front.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 
 namespace raycone {
 namespace {
@@ -33,8 +33,8 @@ std::optional<std::vector<Place>> places_of(const ArrangedPatches& patches, Arra
 // Makes triangles of corners that are rounded, of which equal ones are one vertex.
 class RoundedMesh {
  public:
-  RoundedMesh(const Arrangement& arrangement, bool single_precision)
-      : arrangement_(arrangement), single_precision_(single_precision), vertex_of_(arrangement.corners(), kNone) {}
+  RoundedMesh(const Arrangement& arrangement, VertexPrecision precision)
+      : arrangement_(arrangement), precision_(precision), vertex_of_(arrangement.corners(), kNone) {}
 
   void add(const Triangle& corners, std::uint32_t source) {
     Triangle t{};
@@ -58,12 +58,11 @@ class RoundedMesh {
   }
 
   [[nodiscard]] Vec3 rounded(std::uint32_t corner) const {
-    const Vec3 p = arrangement_.rounded(corner);
-    return single_precision_ ? rounded_to_float(p) : p;
+    return rounded_to(precision_, arrangement_.rounded(corner));
   }
 
   const Arrangement& arrangement_;
-  bool single_precision_;
+  VertexPrecision precision_;
   std::vector<std::uint32_t> vertex_of_;
   std::map<std::tuple<double, double, double>, std::uint32_t> at_place_;
   RuleBorder border_;
@@ -78,7 +77,7 @@ std::optional<RuleBorder> rule_border(const TriangleMesh& mesh, const RuleBorder
   if (!patches) return std::nullopt;
   const std::optional<std::vector<Place>> places = places_of(*patches, *arrangement, mesh, options.rule);
   if (!places) return std::nullopt;
-  RoundedMesh border(*arrangement, options.single_precision);
+  RoundedMesh border(*arrangement, options.precision);
   for (std::size_t n = 0; n < arrangement->triangles().size(); ++n) {
     const Triangle& t = arrangement->triangles()[n];
     const Place place = (*places)[patches->of_triangle[n]];

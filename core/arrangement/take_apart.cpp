@@ -12,8 +12,8 @@
 #include "core/arrangement/face_pairs.h"
 #include "core/arrangement/fan_cone.h"
 #include "core/arrangement/fan_parting.h"
-#include "core/data/single_precision.h"
 #include "core/data/vec3.h"
+#include "core/data/vertex_precision.h"
 #include "core/mesh/disjoint_sets.h"
 #include "core/mesh/face_edges.h"
 
@@ -202,7 +202,7 @@ class BorderSplitter {
     return std::nullopt;
   }
 
-  [[nodiscard]] Vec3 rounded(const Vec3& p) const { return options_.single_precision ? rounded_to_float(p) : p; }
+  [[nodiscard]] Vec3 rounded(const Vec3& p) const { return rounded_to(options_.precision, p); }
 
   template <class Visit>
   void for_each_corner(const Visit& visit) const {

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "core/contour/contour.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 #include "core/machine/sum_over.h"
 
 namespace raycone {
@@ -58,7 +58,7 @@ class ChainPlace {
 std::uint64_t misplaced_vertices(const ContourPoints& points, const SurfaceCells& cells, const FacePoints& face_points,
                                  std::span<const std::uint64_t> tetrahedra, const SurfaceMargins& margins) {
   const ChainPlace place(cells, margins.inner);
-  const auto as_written = [&](const Vec3& p) { return points.single_precision ? rounded_to_float(p) : p; };
+  const auto as_written = [&](const Vec3& p) { return rounded_to(points.precision, p); };
   const auto at_edges = [&](std::size_t n) {
     const SurfaceCell& cell = cells.cells()[n];
     std::uint64_t wrong = 0;

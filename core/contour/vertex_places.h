@@ -8,6 +8,7 @@
 #include "core/cells/surface_cells.h"
 #include "core/contour/face_points.h"
 #include "core/data/vec3.h"
+#include "core/data/vertex_precision.h"
 
 namespace raycone {
 
@@ -15,7 +16,7 @@ namespace raycone {
 struct ContourPoints {
   std::span<const EdgePoint> edges;
   std::span<const Vec3> faces, apexes;
-  bool single_precision = false;  // they become vertices that are rounded to float
+  VertexPrecision precision = VertexPrecision::kDouble;  // of the vertices that they become
 };
 
 // How many of these, before any merging, are not strictly inside of their edge, face or tetrahedron: less than half the

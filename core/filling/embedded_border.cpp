@@ -19,10 +19,6 @@ namespace {
 
 constexpr std::size_t kMostPairs = 1 << 17;  // of faces that meet; of more, a look may take longer than a contour
 
-double rounding_of(const TriangleMesh& mesh, bool single_precision) {
-  return (single_precision ? 0x1p-24 : 0x1p-53) * largest_coordinate(bounding_box(mesh));
-}
-
 // Whether the boundary may be empty but for how it is cut into edges: of the edges at its last vertex, two lie on each
 // other. Of nearly all open meshes they do not.
 bool may_be_closed(const TriangleMesh& mesh) {
@@ -111,11 +107,10 @@ std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const NodeS
   constexpr int kRounds = 3;
   constexpr double kApart = 0x1p-30, kApartRoundings = 32.0;  // the larger one, voxels
   constexpr double kNear = 16.0, kFarther = 16.0;             // roundings, and so many times that the next time
-  const bool single_precision = options.single_precision;
   if (!may_be_closed(mesh)) return std::nullopt;
-  const double rounding = rounding_of(mesh, single_precision);
-  ApartOptions as{std::max(kApart * inside.lattice().least_spacing(), kApartRoundings * rounding), single_precision};
-  const std::optional<RuleBorder> first = rule_border(mesh, {options.rule, single_precision, kMostPairs});
+  const double rounding = relative_rounding(options.precision) * largest_coordinate(bounding_box(mesh));
+  ApartOptions as{std::max(kApart * inside.lattice().least_spacing(), kApartRoundings * rounding), options.precision};
+  const std::optional<RuleBorder> first = rule_border(mesh, {options.rule, options.precision, kMostPairs});
   if (!first || first->sources.empty()) return std::nullopt;
   std::optional<RuleBorder> border = first;
   TriangleMesh tried;
@@ -131,7 +126,7 @@ std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const NodeS
     if (round == kRounds) break;
     snap(*border, near);
     if (std::optional<SurfaceMesh> surface = surface_of_border()) return surface;
-    std::optional<RuleBorder> again = rule_border(border->mesh, {Rule{}, single_precision, kMostPairs});
+    std::optional<RuleBorder> again = rule_border(border->mesh, {Rule{}, options.precision, kMostPairs});
     if (again) look_through(again->sources, border->sources);
     border = std::move(again);
   }

@@ -55,7 +55,7 @@ std::optional<FilledBorder> filled_border(const TriangleMesh& mesh, const std::v
   const auto own = static_cast<std::int32_t>(mesh.triangles.size());
   for (std::int32_t& source : surface.sources) source = source < own ? source : kHole;
   const RuleAlong along(evaluators, options.rule);
-  if (!fit_to_threshold(surface, along, inside, {limits.fill, options.single_precision})) return std::nullopt;
+  if (!fit_to_threshold(surface, along, inside, {limits.fill, options.precision})) return std::nullopt;
   SurfaceOptions once = options;
   once.rule = Rule{};
   std::optional<MeshBorder> again = mesh_border(surface.mesh, inside, once, limits.cut);

@@ -10,7 +10,7 @@
 
 #include "core/cells/line_roots.h"
 #include "core/certificate/certificate.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 #include "core/distance/distance.h"
 #include "core/filling/fill_faces.h"
 #include "core/mesh/exterior_edges.h"
@@ -127,7 +127,7 @@ class ThresholdFit {
     for (std::size_t n = 0; n < parts.size(); ++n) {
       const auto [one, other] = fill_.faces_of(parts[n]);
       if (places[n]) {
-        fill_.divide(parts[n], options_.single_precision ? rounded_to_float(*places[n]) : *places[n]);
+        fill_.divide(parts[n], rounded_to(options_.precision, *places[n]));
         is_settled_[one] = is_settled_[other] = false;
       } else {
         is_settled_[parts[n].face] = true;
@@ -234,7 +234,7 @@ class ThresholdFit {
     const std::vector<Misplaced> misplaced = positions_of(nodes);
     const std::vector<std::uint32_t> nearest = nearest_faces(misplaced);
     const std::vector<std::array<std::uint32_t, 3>> sides = inner_sides();
-    const double lift = voxel_ * surface_margin(inside_.lattice(), options_.single_precision);
+    const double lift = voxel_ * surface_margin(inside_.lattice(), options_.precision);
     std::vector<bool> is_taken(fill_.size(), false);
     std::vector<Part> parts;
     std::vector<Line> lines;
@@ -279,7 +279,7 @@ class ThresholdFit {
   // be above the threshold, or below it within the solid. Where that reaches a node, it gets a small part of its own:
   // as far along each axis as the threshold, or a bit less. Returns whether there are any.
   bool add_islands(const std::vector<Misplaced>& nodes) {
-    const double least = voxel_ * surface_margin(inside_.lattice(), options_.single_precision);
+    const double least = voxel_ * surface_margin(inside_.lattice(), options_.precision);
     std::vector<Line> lines;
     for (const Misplaced& node : nodes) {
       for (int axis = 0; axis < 3; ++axis) {
@@ -297,8 +297,7 @@ class ThresholdFit {
         const Line& line = lines[6 * n + tip];
         const std::optional<Vec3>& root = roots[6 * n + tip];
         const double reach = kIsland * (root ? norm(*root - line.point) : voxel_);
-        tips[tip] = line.point + std::max(reach, least) * line.direction;
-        if (options_.single_precision) tips[tip] = rounded_to_float(tips[tip]);
+        tips[tip] = rounded_to(options_.precision, line.point + std::max(reach, least) * line.direction);
       }
       fill_.add_octahedron(tips, nodes[n].is_inside);
     }

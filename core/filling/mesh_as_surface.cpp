@@ -136,7 +136,7 @@ std::optional<FinishedSurface> whole_mesh(const Input& input) {
   if (!(options.simplify > 0.0)) made.own->held = held_triangles(made.surface, mesh);
   constexpr double kMargin = 0.0;  // no point is kept off nodes
   const SurfaceBounds bounds{kMargin, plane_tolerance(mesh, inside.lattice()), options.simplify};
-  if (!merge(made, mesh, inside, {kMargin, bounds.merge_tolerance(), options.single_precision})) return std::nullopt;
+  if (!merge(made, mesh, inside, {kMargin, bounds.merge_tolerance(), options.precision})) return std::nullopt;
   if (made.surface.sources.size() > most) return std::nullopt;
   if (options.simplify > 0.0) simplify(made, mesh, inside, bounds.farthest_pull(), options);
   return made;

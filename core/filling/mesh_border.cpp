@@ -9,7 +9,7 @@
 #include "core/cells/surface_mesh.h"
 #include "core/certificate/border_components.h"
 #include "core/certificate/certificate.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 #include "core/filling/embedded_border.h"
 #include "core/mesh/used_part.h"
 
@@ -28,7 +28,7 @@ SurfaceMesh surface_of(const TriangleMesh& mesh) {
 std::optional<MeshBorder> mesh_border(const TriangleMesh& mesh, const NodeSet& inside, const SurfaceOptions& options,
                                       std::size_t most) {
   SurfaceMesh itself = surface_of(mesh);
-  if (options.single_precision) round_to_float(itself.mesh.vertices);
+  round_to(options.precision, itself.mesh.vertices);
   if (!std::isfinite(largest_coordinate(bounding_box(itself.mesh)))) return std::nullopt;  // beyond floats
   if (is_closed_and_embedded(itself.mesh) && keep_border(itself, options.rule)) {
     return MeshBorder{std::move(itself), options.rule};

@@ -8,7 +8,7 @@
 
 #include "core/cells/surface_mesh.h"
 #include "core/certificate/certificate.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 #include "core/merging/kept_vertices.h"
 #include "core/merging/left_behind.h"
 #include "core/merging/merge_planes.h"
@@ -127,7 +127,7 @@ class CheckedMerger {
   void apply_moves(const MergedFaces& merged, TriangleMesh& mesh) const {
     if (moves_ == PointMoves::kNone) return;
     move_points(moves_, input_, merged.sources, inside_.lattice(), kNearCorner * unit_, mesh);
-    if (options_.single_precision) round_to_float(mesh.vertices);
+    round_to(options_.precision, mesh.vertices);
     for (std::size_t face = 0; face < merged.triangles.size(); ++face) {
       for (std::size_t n = 0; n < 3; ++n) {
         const std::uint32_t v = merged.triangles[face][n];

@@ -276,7 +276,7 @@ class CornerGaps {
     const auto are_all = [&](std::span<const Vec3> points) { return are_on_mesh(points, distance_, limits_.off); };
     constexpr std::size_t kMostCorners = 4;
     std::optional<GapFill> found =
-        fill_loop(*loop, {limits_.off, limits_.reach, kMostCorners, limits_.single_precision, are_all});
+        fill_loop(*loop, {limits_.off, limits_.reach, kMostCorners, limits_.precision, are_all});
     if (!found || has_edge_elsewhere(*found, fill, faces_at)) return std::nullopt;
     fill.filled = *std::move(found);
     return fill;

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/cells/source_plane.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 #include "core/sharpening/best_triangulation.h"
 
 namespace raycone {
@@ -42,8 +42,7 @@ class GapFiller {
     return std::move(filled_);
   }
   std::optional<GapFill> fill_from(const Vec3& corner) {
-    if (!has_fronts() || !fill_sectors(limits_.single_precision ? rounded_to_float(corner) : corner))
-      return std::nullopt;
+    if (!has_fronts() || !fill_sectors(rounded_to(limits_.precision, corner))) return std::nullopt;
     return std::move(filled_);
   }
 
@@ -233,7 +232,7 @@ bool GapFiller::add_corner(const std::vector<std::size_t>& corners, const RunLab
   const Vec3 &from = points_[corners.front()], &to = points_[corners.back()];
   std::optional<Vec3> point = meeting_point(planes, 0.5 * from + 0.5 * to);
   if (!point) return false;
-  if (limits_.single_precision) point = rounded_to_float(*point);
+  point = rounded_to(limits_.precision, *point);
   const auto is_near = [&](std::size_t end) {
     const Vec3 step = *point - points_[end];
     return dot(step, step) <= limits_.reach * limits_.reach;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/data/triangle_mesh.h"
+#include "core/data/vertex_precision.h"
 #include "core/distance/distance.h"
 
 namespace raycone {
@@ -33,7 +34,7 @@ struct GapLimits {
   double off = 0.0;    // how far points of one plane are from it at most, world units
   double reach = 0.0;  // how far new corners may be from corners of the loop, likewise
   std::size_t new_corners = 0;
-  bool single_precision = false;                           // new corners are rounded to float
+  VertexPrecision precision = VertexPrecision::kDouble;    // of new corners
   std::function<bool(std::span<const Vec3>)> are_on_mesh;  // all of them
 };
 

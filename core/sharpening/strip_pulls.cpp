@@ -9,7 +9,7 @@
 
 #include "core/cells/cell_creases.h"
 #include "core/certificate/surface_edit.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -127,9 +127,9 @@ void StripPulls::find_fill(Gap& gap) const {
   gap.free = *within;
   if (std::ranges::any_of(gap.free, [&](std::uint32_t v) { return place(v) == Sharpener::kNoPlace; })) return;
   const auto are_all = [&](std::span<const Vec3> points) { return are_all_on_mesh(points); };
-  gap.filled = fill_gap(
-      *around, all_.input_,
-      {all_.limits_.off, all_.limits_.reach, gap.free.size() + part_.spares, all_.limits_.single_precision, are_all});
+  gap.filled =
+      fill_gap(*around, all_.input_,
+               {all_.limits_.off, all_.limits_.reach, gap.free.size() + part_.spares, all_.limits_.precision, are_all});
 }
 
 bool StripPulls::fill(const Gap& gap) {
@@ -271,7 +271,7 @@ std::optional<Vec3> StripPulls::place_for(std::uint32_t u, std::uint32_t v) {
   }
   std::optional<Vec3> place = meeting_point(planes, 0.5 * p + 0.5 * q);
   if (!place) return std::nullopt;
-  if (all_.limits_.single_precision) place = rounded_to_float(*place);
+  place = rounded_to(all_.limits_.precision, *place);
   for (const Vec3& from : {p, q}) {
     const Vec3 step = *place - from;
     if (!(dot(step, step) <= all_.limits_.reach * all_.limits_.reach)) return std::nullopt;

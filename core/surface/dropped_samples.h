@@ -12,6 +12,7 @@
 #include "core/cells/surface_mesh.h"
 #include "core/data/triangle_mesh.h"
 #include "core/data/vec3.h"
+#include "core/data/vertex_precision.h"
 #include "core/distance/distance.h"
 
 namespace raycone {
@@ -28,9 +29,9 @@ void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t t
 
 // A point of a mesh that is farther than this from a surface made of it, in world units, is dropped: of a surface that
 // has the mesh's own faces, more than these are moved where they are cut or merged; of a contour, what it cuts off
-// edges at most, as a rule. Without thickness, and not simplified. `single_precision`: of the surface's vertices.
+// edges at most, as a rule. Without thickness, and not simplified. `precision`: of the surface's vertices.
 [[nodiscard]] double farthest_kept(const TriangleMesh& mesh, const Lattice& lattice, bool own_faces,
-                                   bool single_precision);
+                                   VertexPrecision precision);
 
 // Finds the points that are dropped: farther from the surface than `farthest`. Where the set has no thickness, also
 // those that are not on the surface, of components of the mesh that no face of the surface is of.

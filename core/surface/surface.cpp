@@ -18,7 +18,7 @@
 #include "core/contour/contour.h"
 #include "core/contour/face_points.h"
 #include "core/contour/vertex_places.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 #include "core/distance/distance.h"
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
@@ -57,7 +57,7 @@ class SurfaceMaker {
   FinishedSurface make() {
     enter("finding points on the mesh");
     constexpr std::array kWidened{1.0, 0x1p6, 0x1p12};
-    const double least = surface_margin(inside_.lattice(), options_.single_precision);
+    const double least = surface_margin(inside_.lattice(), options_.precision);
     Attempt last;
     for (const double factor : kWidened) {
       const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
@@ -131,7 +131,7 @@ class SurfaceMaker {
     std::optional<SurfaceMesh> surface =
         surface_beside_nodes(mesh_, inside_, points,
                              {kNearCorner * margins.inner * inside_.lattice().least_spacing(),
-                              most_merging(limits.margin, limits.merge_tolerance()), most, options_.single_precision},
+                              most_merging(limits.margin, limits.merge_tolerance()), most, options_.precision},
                              merged_surface);
     if (!surface) return std::nullopt;
     FinishedSurface made{*std::move(surface)};
@@ -164,10 +164,10 @@ class SurfaceMaker {
   Attempt attempt(const FacePoints& sharp, const SurfaceMargins& margins, const AttemptOptions& how) {
     enter("joining them by triangles");
     auto [surface, tetrahedra, first_apex, fewer] = contour(in_cells(margins), sharp, how.cells);
-    if (options_.single_precision) round_to_float(surface.mesh.vertices);
+    round_to(options_.precision, surface.mesh.vertices);
     Attempt result;
     const ContourPoints made_of{points_, sharp.positions(), std::span(surface.mesh.vertices).subspan(first_apex),
-                                options_.single_precision};
+                                options_.precision};
     const std::uint64_t places = misplaced_vertices(made_of, cells_, sharp, tetrahedra, margins);
     // Sharpening looks at sources, and moves faces into planes of others. Merging keeps them, so that it changes no
     // area of theirs.
@@ -201,7 +201,7 @@ class SurfaceMaker {
     const auto is_right_unmerged = [&] { return is_right(surface, 0, attempt); };
     CheckedMerge result = checked_merge(
         surface, mesh_, inside_,
-        {margins.inner, bounds(margins).merge_tolerance(), options_.single_precision, kind == ContourCells::kPolygons},
+        {margins.inner, bounds(margins).merge_tolerance(), options_.precision, kind == ContourCells::kPolygons},
         is_right_unmerged);
     const double margin = bounds(margins).margin;
     attempt.cuts_nodes_off = result.cuts_nodes_off && is_of_planes(surface, mesh_, std::max(kOff * margin, tolerance_));
@@ -215,7 +215,7 @@ class SurfaceMaker {
     constexpr double kReach = 2.0;  // voxels
     const Lattice& lattice = inside_.lattice();
     const SharpenLimits limits{std::max(kOff * margins.inner * lattice.largest_spacing(), tolerance_),
-                               kReach * lattice.least_spacing(), options_.single_precision, fewer};
+                               kReach * lattice.least_spacing(), options_.precision, fewer};
     const bool is_pulled = checked_sharpen(surface, mesh_, normals_, distance_, lattice, limits);
     return fill_corner_gaps(surface, mesh_, normals_, distance_, lattice, limits) || is_pulled;
   }
@@ -270,9 +270,9 @@ class SurfaceMaker {
 }  // namespace
 
 // Fewer roundings are enough where more would be too much; but they keep less apart what must not meet.
-double surface_margin(const Lattice& lattice, bool single_precision) {
+double surface_margin(const Lattice& lattice, VertexPrecision precision) {
   constexpr double kLeast = 0x1p-30, kRoundings = 0x1p8, kFewest = 0x1p5;
-  const double rounding = std::max((single_precision ? 0x1p-24 : 0x1p-53) * largest_coordinate(lattice), 0x1p-1074);
+  const double rounding = std::max(relative_rounding(precision) * largest_coordinate(lattice), 0x1p-1074);
   const double voxels = rounding / lattice.least_spacing();
   return std::max(kLeast, (kRoundings * voxels <= kMostOfFirst ? kRoundings : kFewest) * voxels);
 }
@@ -282,11 +282,12 @@ FinishedSurface closed_surface(const TriangleMesh& mesh, const FineAndRough& eva
   const DefaultFloatingPoint guard;
   constexpr double kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80, kLeastCoordinate = 0x1p-1000;
   const double largest = largest_coordinate(inside.lattice());
-  const double margin = surface_margin(inside.lattice(), options.single_precision);
-  const std::string precision = options.single_precision ? "single precision" : "double precision";
+  const double margin = surface_margin(inside.lattice(), options.precision);
+  const bool is_single = options.precision == VertexPrecision::kSingle;
+  const std::string precision = is_single ? "single precision" : "double precision";
   const bool fits_float = largest < kLargestFloat && inside.lattice().least_spacing() > kLeastVoxel;
   const bool is_tiny = largest < kLeastCoordinate && !(margin <= kMostOfFirst);
-  if (is_tiny || (options.single_precision && !fits_float)) {
+  if (is_tiny || (is_single && !fits_float)) {
     throw LatticeOutOfRange("the lattice is beyond what " + precision + " can hold");
   }
   if (!(margin <= kMostOfFirst))

@@ -9,7 +9,7 @@
 
 #include "core/cells/source_plane.h"
 #include "core/certificate/certificate.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 #include "core/distance/distance.h"
 #include "core/merging/mesh_corners.h"
 
@@ -30,7 +30,7 @@ bool put_nodes_right(SurfaceMesh& surface, const TriangleMesh& input, const Node
   for (const PointMoves moves : {PointMoves::kToCorners, PointMoves::kIntoLevelPlanes}) {
     TriangleMesh moved = surface.mesh;
     move_points(moves, input, surface.sources, inside.lattice(), limits.to_corners, moved);
-    if (limits.single_precision) round_to_float(moved.vertices);
+    round_to(limits.precision, moved.vertices);
     if (!faults_of(moved, inside).none()) continue;
     surface.mesh = std::move(moved);
     return true;

@@ -14,6 +14,7 @@
 #include "core/cells/surface_mesh.h"
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
+#include "core/data/vertex_precision.h"
 
 namespace raycone {
 
@@ -25,7 +26,7 @@ struct BesideNodesLimits {
   double to_corners = 0.0;  // how far points may be moved to corners, and into level planes, of the mesh
   double off = 0.0;         // how far points of the lattice's edges may be from the surface
   std::size_t faces = 0;    // with as many a surface is of no use
-  bool single_precision = false;
+  VertexPrecision precision = VertexPrecision::kDouble;
 };
 
 // The merged surface of a lattice, where there is one without faults.

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "core/data/triangle_mesh.h"
+#include "core/data/vertex_precision.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
@@ -21,7 +22,9 @@ enum class SurfaceFormat { kPly, kStl, kObj, kOff };
 }
 
 // STL holds single precision; the others hold doubles as they are.
-[[nodiscard]] inline bool is_single_precision(SurfaceFormat format) { return format == SurfaceFormat::kStl; }
+[[nodiscard]] inline VertexPrecision vertex_precision(SurfaceFormat format) {
+  return format == SurfaceFormat::kStl ? VertexPrecision::kSingle : VertexPrecision::kDouble;
+}
 
 // Writes the mesh and commits. PLY (binary, little-endian) has vertices in double precision and a property `source` of
 // faces, which is `sources`; the others leave it out. STL is binary, with unit normals. Vertices keep their numbers

@@ -11,7 +11,7 @@
 
 #include "core/cells/surface_mesh.h"
 #include "core/certificate/certificate.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 #include "core/evaluation/winding_number.h"
 #include "core/exact/direct_sum.h"
 #include "core/filling/closed_by_caps.h"
@@ -143,11 +143,11 @@ TEST(FitToThreshold, LeavesWhatIsFlat) {
 
 TEST(FitToThreshold, RoundsNewVerticesToSinglePrecision) {
   TriangleMesh mesh = bent_bowl();
-  round_to_float(mesh.vertices);
-  const Filled result = filled(mesh, 0.1, {.most_faces = 10000, .single_precision = true});
+  round_to(VertexPrecision::kSingle, mesh.vertices);
+  const Filled result = filled(mesh, 0.1, {.most_faces = 10000, .precision = VertexPrecision::kSingle});
   EXPECT_TRUE(result.fits);
   std::vector<Vec3> rounded = result.surface.mesh.vertices;
-  round_to_float(rounded);
+  round_to(VertexPrecision::kSingle, rounded);
   EXPECT_EQ(rounded, result.surface.mesh.vertices);
 }
 

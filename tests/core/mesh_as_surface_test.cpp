@@ -17,7 +17,7 @@
 #include "core/cells/surface_cells.h"
 #include "core/cells/surface_mesh.h"
 #include "core/certificate/certificate.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 #include "core/distance/distance.h"
 #include "core/filling/seen_by_nodes.h"
 #include "core/mesh/exterior_edges.h"
@@ -63,8 +63,8 @@ std::optional<FinishedSurface> kept(const TriangleMesh& mesh, double side, const
   if (made) {
     EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
     std::vector<Vec3> rounded = made->surface.mesh.vertices;
-    round_to_float(rounded);
-    EXPECT_TRUE(!options.single_precision || rounded == made->surface.mesh.vertices);
+    round_to(VertexPrecision::kSingle, rounded);
+    EXPECT_TRUE(options.precision == VertexPrecision::kDouble || rounded == made->surface.mesh.vertices);
     EXPECT_EQ(made->surface.sources.size(), made->surface.mesh.triangles.size());
   }
   return made;
@@ -93,7 +93,7 @@ TriangleMesh bent_box(std::uint32_t strips, double depth, double bend, double he
       mesh.vertices.insert(mesh.vertices.end(), {{x, -depth, z}, {x, depth, z}});
     }
   }
-  round_to_float(mesh.vertices);
+  round_to(VertexPrecision::kSingle, mesh.vertices);
   const std::uint32_t below = 2 * (strips + 1);
   const auto quad = [&mesh](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
@@ -252,9 +252,8 @@ TEST(MeshAsSurface, ClosesHolesAlongTheThreshold) {
   for (const TriangleMesh& mesh :
        {test::open_box(), test::joined(box_at(2, 0.5), test::open_box()), without(sphere, {{-2, -2, 0.8}, {2, 2, 2}}),
         without(sphere, {{0.2, 0.1, 0.3}, {2, 2, 0.8}})}) {
-    for (const bool single_precision : {false, true}) {
-      const std::optional<FinishedSurface> made =
-          kept(turned(mesh), 27, {.rule = Rule{}, .single_precision = single_precision});
+    for (const VertexPrecision precision : {VertexPrecision::kDouble, VertexPrecision::kSingle}) {
+      const std::optional<FinishedSurface> made = kept(turned(mesh), 27, {.rule = Rule{}, .precision = precision});
       ASSERT_TRUE(made);
       EXPECT_TRUE(holds_all(*made));
       EXPECT_TRUE(made->merged);
@@ -361,11 +360,11 @@ TEST(MeshAsSurface, IsNoneOfMeshesThatAreMostlyHole) {
 // Of a mesh with faults, or that is not what the rule asks for, the border. Parts that touch are apart by 2^-30 of a
 // voxel, a twentieth, or 32 roundings to float, 4e-6: some times that, for the areas of the parts.
 void expect_volume(const TriangleMesh& mesh, double volume, const Rule& rule = {}) {
-  for (const bool single_precision : {false, true}) {
-    const double most = single_precision ? 5e-5 : 1e-9;
-    const std::optional<FinishedSurface> made =
-        kept(turned(mesh), 20, {.rule = rule, .single_precision = single_precision});
-    ASSERT_TRUE(made) << volume << ' ' << single_precision;
+  for (const VertexPrecision precision : {VertexPrecision::kDouble, VertexPrecision::kSingle}) {
+    const bool is_single = precision == VertexPrecision::kSingle;
+    const double most = is_single ? 5e-5 : 1e-9;
+    const std::optional<FinishedSurface> made = kept(turned(mesh), 20, {.rule = rule, .precision = precision});
+    ASSERT_TRUE(made) << volume << ' ' << is_single;
     EXPECT_TRUE(made->merged);
     EXPECT_NEAR(volume_of(made->surface.mesh), volume, most);
     for (std::size_t face = 0; face < made->surface.sources.size(); ++face) {
@@ -573,18 +572,18 @@ TEST(MeshAsSurface, IsNoneWhereItWouldBeAnotherSurface) {
 
 TEST(MeshAsSurface, IsRoundedToSinglePrecision) {
   const TriangleMesh ball = weld(test::sphere(6), {});
-  const std::optional<FinishedSurface> made = kept(ball, 20, {.rule = {}, .single_precision = true});
+  const std::optional<FinishedSurface> made = kept(ball, 20, {.rule = {}, .precision = VertexPrecision::kSingle});
   ASSERT_TRUE(made);
   TriangleMesh rounded = ball;
-  round_to_float(rounded.vertices);
+  round_to(VertexPrecision::kSingle, rounded.vertices);
   EXPECT_EQ(sorted_vertices(made->surface.mesh), sorted_vertices(rounded));
   // Where floats are a tenth of a unit apart, vertices meet.
   const TriangleMesh far = test::moved(ball, {1, 1, 1}, {1e6, 0, 0});
-  EXPECT_FALSE(kept(far, 20, {.rule = {}, .single_precision = true}));
+  EXPECT_FALSE(kept(far, 20, {.rule = {}, .precision = VertexPrecision::kSingle}));
   EXPECT_TRUE(kept(far, 20));
   // A contour is refused so far from the origin; floats that are those of the mesh need no margin.
   const TriangleMesh whole = test::box_mesh({1e7, 0, 0}, {1e7 + 64, 64, 64});
-  EXPECT_TRUE(kept(whole, 200, {.rule = {}, .single_precision = true}));
+  EXPECT_TRUE(kept(whole, 200, {.rule = {}, .precision = VertexPrecision::kSingle}));
 }
 
 TEST(MeshAsSurface, IsSimplified) {

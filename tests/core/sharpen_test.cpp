@@ -66,7 +66,7 @@ TEST(Sharpening, PullsNothingOffTheMesh) {
   SurfaceMesh surface{cut, std::vector<std::int32_t>(cut.triangles.size())};
   std::iota(surface.sources.begin(), surface.sources.end(), 0);
   surface.sources[0] = surface.sources[1] = on_the_top(cut);
-  const SharpenLimits limits{1e-9, 0.2, false};
+  const SharpenLimits limits{1e-9, 0.2};
   const DistanceEvaluator from_cut(cut), from_whole(whole_box);
   Sharpener of_cut(surface, cut, TriangleNormals(cut), from_cut, limits);
   static_cast<void>(of_cut.sharpen());
@@ -100,7 +100,7 @@ TEST(Sharpening, PullsTheStripsAnewThatHaveWhatIsKept) {
   SurfaceMesh surface{cut, std::vector<std::int32_t>(cut.triangles.size(), 0)};
   const DistanceEvaluator distance(whole);
   SourceSettler(whole, TriangleNormals(whole), distance, 0.01).settle(surface);
-  Sharpener sharpener(surface, whole, TriangleNormals(whole), distance, {1e-9, 0.2, false});
+  Sharpener sharpener(surface, whole, TriangleNormals(whole), distance, {1e-9, 0.2});
   sharpener.sharpen();
   ASSERT_EQ(sharpener.pulls(), 2U);
   const SurfaceEdit change = sharpener.keep({0, 1, 2, 3}, Sharpener::Kept::kPulled);
@@ -139,7 +139,7 @@ OccupiedCut occupied_cut(double lower) {
 bool is_sharpened(OccupiedCut& cut, int rounds) {
   const Lattice lattice{{-1.08, -1.08, -1.08}, {0.1, 0.1, 0.1}, {0, 0, 0}, {60, 70, 30}};  // no node in a cut
   return checked_sharpen(cut.surface, cut.input, TriangleNormals(cut.input), DistanceEvaluator(cut.input), lattice,
-                         {1e-9, 0.2, false}, rounds);
+                         {1e-9, 0.2}, rounds);
 }
 
 // What the last round had put back was left as it had been pulled, with corners that are no more.

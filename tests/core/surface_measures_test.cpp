@@ -28,7 +28,7 @@ using test::uniform;
 
 DroppedSamples dropped_samples(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside,
                                double thickness = 0.0, bool own_faces = false) {
-  const double farthest = farthest_kept(mesh, inside.lattice(), own_faces, false) + thickness;
+  const double farthest = farthest_kept(mesh, inside.lattice(), own_faces, VertexPrecision::kDouble) + thickness;
   return {surface, inside, thickness, farthest, {}};
 }
 
@@ -75,12 +75,12 @@ TEST(SurfaceMeasures, AreAsFineFarAway) {
   const auto lattice_of = [](const TriangleMesh& mesh) {
     return Lattice{bounding_box(mesh).lower, {0.1, 0.1, 0.1}, {-1, -1, -1}, {12, 12, 12}};
   };
-  const auto off = [&](const TriangleMesh& mesh, bool single) {
-    return farthest_kept(mesh, lattice_of(mesh), true, single);
+  const auto off = [&](const TriangleMesh& mesh, VertexPrecision precision) {
+    return farthest_kept(mesh, lattice_of(mesh), true, precision);
   };
-  EXPECT_NEAR(off(box, false), 2e-4, 1e-4);  // 2^-9 voxels
-  EXPECT_NEAR(off(far, false), 2e-4, 1e-4);
-  EXPECT_NEAR(off(far, true), 0.25 * 0.1 * std::sqrt(3.0), 1e-9);  // more is too much in any case
+  EXPECT_NEAR(off(box, VertexPrecision::kDouble), 2e-4, 1e-4);  // 2^-9 voxels
+  EXPECT_NEAR(off(far, VertexPrecision::kDouble), 2e-4, 1e-4);
+  EXPECT_NEAR(off(far, VertexPrecision::kSingle), 0.25 * 0.1 * std::sqrt(3.0), 1e-9);  // more is too much in any case
 }
 
 // Many are looked at together. Each is as its own distance says.
@@ -100,7 +100,8 @@ TEST(SurfaceMeasures, DropWhatIsFarPointByPoint) {
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
   for (const bool own_faces : {false, true}) {
     DroppedSamples dropped = dropped_samples(surface, mesh, inside, 0.25 * lattice.spacing.x, own_faces);
-    const double farthest = farthest_kept(mesh, lattice, own_faces, false) + 0.25 * lattice.spacing.x;
+    const double farthest =
+        farthest_kept(mesh, lattice, own_faces, VertexPrecision::kDouble) + 0.25 * lattice.spacing.x;
     std::size_t count = 0, far = 0;
     dropped.for_each(mesh, [&](const AreaSamples& samples, const std::vector<bool>& is_dropped) {
       std::vector<double> distances(samples.points.size());
@@ -137,7 +138,7 @@ TEST(SurfaceMeasures, AreTheLargestDistanceFromTheMesh) {
   for (int round = 0; round < 6; ++round) {
     const TriangleMesh mesh = rotated(round % 2 == 0 ? test::open_box() : test::sphere(9));
     SurfaceOptions options;
-    options.single_precision = round > 3;
+    options.precision = round > 3 ? VertexPrecision::kSingle : VertexPrecision::kDouble;
     auto [surface, lattice] = surface_of(mesh, 16 + round, options);
     // Some vertices off the mesh, as nothing makes them: not what their sources say.
     if (round % 3 == 2) surface.mesh.vertices[surface.mesh.triangles[7][0]].x += 3.0 * lattice.spacing.x;

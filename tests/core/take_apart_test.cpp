@@ -13,7 +13,7 @@
 #include "core/cells/node_set.h"
 #include "core/certificate/certificate.h"
 #include "core/data/lattice.h"
-#include "core/data/single_precision.h"
+#include "core/data/vertex_precision.h"
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/components.h"
 #include "core/mesh/weld.h"
@@ -30,10 +30,10 @@ struct Taken {
   bool is_apart;
 };
 
-Taken taken_apart(const TriangleMesh& mesh, bool single_precision = false) {
+Taken taken_apart(const TriangleMesh& mesh, VertexPrecision precision = VertexPrecision::kDouble) {
   Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
   std::iota(taken.sources.begin(), taken.sources.end(), 0);
-  taken.is_apart = take_apart(taken.mesh, taken.sources, {kDistance, single_precision}).has_value();
+  taken.is_apart = take_apart(taken.mesh, taken.sources, {kDistance, precision}).has_value();
   return taken;
 }
 
@@ -165,13 +165,13 @@ TEST(TakeApart, TakesCellsApart) {
     const TriangleMesh mesh = test::random_cells(random, 2 + round % 3);
     if (is_closed_and_embedded(mesh)) continue;
     ++touching;
-    for (const bool single_precision : {false, true}) {
-      const Taken taken = taken_apart(mesh, single_precision);
+    for (const VertexPrecision precision : {VertexPrecision::kDouble, VertexPrecision::kSingle}) {
+      const Taken taken = taken_apart(mesh, precision);
       EXPECT_TRUE(taken.is_apart) << round;
       EXPECT_TRUE(is_closed_and_embedded(taken.mesh)) << round;
       std::vector<Vec3> rounded = taken.mesh.vertices;
-      round_to_float(rounded);
-      EXPECT_EQ(rounded == taken.mesh.vertices, single_precision) << round;
+      round_to(VertexPrecision::kSingle, rounded);
+      EXPECT_EQ(rounded == taken.mesh.vertices, precision == VertexPrecision::kSingle) << round;
     }
   }
   EXPECT_GT(touching, 150);

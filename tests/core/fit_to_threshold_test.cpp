@@ -2,11 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/cells/surface_mesh.h"
@@ -16,25 +14,16 @@
 #include "core/exact/direct_sum.h"
 #include "core/filling/closed_by_caps.h"
 #include "core/filling/fill_check.h"
-#include "core/filling/mesh_as_surface.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/exterior_edges.h"
-#include "core/mesh/used_part.h"
-#include "core/mesh/weld.h"
+#include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
 
-// The faces of a sphere whose middle is where `has` holds.
-template <class Has>
-TriangleMesh part_of_sphere(int rings, const Has& has) {
-  TriangleMesh mesh = weld(test::sphere(rings), {});
-  std::erase_if(mesh.triangles, [&](const Triangle& t) {
-    return !has((1.0 / 3.0) * (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]));
-  });
-  return used_part(mesh.vertices, std::move(mesh.triangles));
-}
+using test::bitten_sphere;
+using test::part_of_sphere;
 
 // With a round hole whose border bends.
 TriangleMesh bent_bowl() {
@@ -43,10 +32,8 @@ TriangleMesh bent_bowl() {
   return mesh;
 }
 
-// With one whose border is jagged, too: the mesh has teeth there that have nothing inside.
-TriangleMesh bitten_sphere() {
-  return part_of_sphere(16, [](const Vec3& p) { return p.z < 0.45 + 0.2 * std::sin(2.0 * std::atan2(p.y, p.x)); });
-}
+// With one whose border is jagged: the mesh has teeth there that have nothing inside.
+TriangleMesh jagged_sphere() { return bitten_sphere(16, 0.45, 0.2, 2.0); }
 
 Lattice lattice_of(double voxel) {
   const auto count = static_cast<std::int64_t>(std::ceil(2.6 / voxel));
@@ -68,30 +55,6 @@ Filled filled(const TriangleMesh& mesh, double voxel, const FitOptions& options,
   NodeSet inside = nodes_inside(evaluator, rule, lattice_of(voxel));
   const bool fits = fit_to_threshold(surface, RuleAlong(evaluator, rule), inside, options);
   return {std::move(surface), std::move(inside), fits};
-}
-
-TEST(ClosedByCaps, ClosesTheMesh) {
-  for (const TriangleMesh& mesh : {test::open_box(), bitten_sphere(), test::notched_fan(), test::fan(5, 3)}) {
-    const TriangleMesh closed = closed_by_caps(mesh, exterior_edges(mesh));
-    EXPECT_TRUE(exterior_edges(closed).empty());
-    EXPECT_EQ(closed.vertices, mesh.vertices);
-    EXPECT_TRUE(std::equal(mesh.triangles.begin(), mesh.triangles.end(), closed.triangles.begin()));
-  }
-}
-
-// Two bowls, one in the other, without the rim between: a strip closes that, of triangles as narrow as it is.
-TEST(ClosedByCaps, ClosesRimsByStrips) {
-  const auto below = [](const Vec3& p) { return p.z < 0.3; };
-  const TriangleMesh outer = part_of_sphere(12, below);
-  const TriangleMesh inner = test::moved(outer, {0.9, 0.9, 0.9}, {0, 0, 0.02});
-  const TriangleMesh bowl = test::joined(outer, test::reversed(inner));
-  const TriangleMesh closed = closed_by_caps(bowl, exterior_edges(bowl));
-  EXPECT_TRUE(exterior_edges(closed).empty());
-  EXPECT_TRUE(is_closed_and_embedded(closed));
-  EXPECT_EQ(closed.triangles.size(), bowl.triangles.size() + 48);  // loops of 24 edges
-  // Not where holes are apart.
-  const TriangleMesh two = test::joined(outer, test::moved(outer, {1, 1, -1}, {0, 0, 3}));
-  EXPECT_EQ(closed_by_caps(two, exterior_edges(two)).triangles.size(), two.triangles.size() + 44);
 }
 
 // New vertices are where a direct sum over all triangles in 113 bits is the threshold.
@@ -127,7 +90,7 @@ TEST(FitToThreshold, NeedsFacesEnough) {
 // Where the winding number is 1 or more at nodes inside, as it is 0 or less at the others.
 TEST(FitToThreshold, PutsNodesOnTheirSides) {
   for (const double voxel : {0.1, 0.06}) {
-    const Filled result = filled(bitten_sphere(), voxel, {.most_faces = 40000});
+    const Filled result = filled(jagged_sphere(), voxel, {.most_faces = 40000});
     EXPECT_TRUE(result.fits);
     NodeSet nodes = nodes_inside(WindingNumberEvaluator(result.surface.mesh), Rule{}, lattice_of(voxel));
     nodes.flip(result.inside);
@@ -158,27 +121,6 @@ TEST(FitToThreshold, IsNotAlongTheThresholdWhereThatIsElsewhere) {
   const DefaultFloatingPoint guard;
   const WindingNumberEvaluator evaluator(pipe);
   EXPECT_FALSE(is_along_threshold(result.surface, RuleAlong(evaluator, Rule{}), 0.1));
-}
-
-// Of a box, which has another's lid: only one of both is on it.
-TEST(FillCheck, TellsWhetherFacesAreLost) {
-  const DefaultFloatingPoint guard;
-  const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
-  const WindingNumberEvaluator evaluator(box);
-  const RuleAlong along(evaluator, Rule{});
-  const auto keeps = [&](double top) {
-    SurfaceMesh surface{test::box_mesh({0, 0, 0}, {1, 1, top}), {}};
-    for (std::int32_t face = 0; face < 12; ++face) {
-      const auto [a, b, c] = surface.mesh.triangles[static_cast<std::size_t>(face)];
-      const bool is_lid =
-          std::min({surface.mesh.vertices[a].z, surface.mesh.vertices[b].z, surface.mesh.vertices[c].z}) > 0;
-      surface.sources.push_back(is_lid ? kHole : face);
-    }
-    return keeps_what_separates(surface, lost_area(surface, box, along, 0.1), 0.1);
-  };
-  EXPECT_TRUE(keeps(1.0));
-  EXPECT_TRUE(keeps(0.98));
-  EXPECT_FALSE(keeps(0.9));
 }
 
 }  // namespace

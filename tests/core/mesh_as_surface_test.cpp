@@ -23,10 +23,13 @@
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/used_part.h"
 #include "core/mesh/weld.h"
+#include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
+
+using test::bitten_sphere;
 
 // By no angle that makes coordinates agree.
 TriangleMesh turned(TriangleMesh mesh) {
@@ -261,16 +264,6 @@ TEST(MeshAsSurface, ClosesHolesAlongTheThreshold) {
       EXPECT_GE(made->surface.mesh.vertices.size(), used_part(mesh.vertices, mesh.triangles).vertices.size());
     }
   }
-}
-
-// A sphere with a hole whose border goes up and down. Its caps are in front of faces beside it.
-TriangleMesh bitten_sphere(int rings, double height, double depth, double times, double at) {
-  TriangleMesh mesh = weld(test::sphere(rings), {});
-  std::erase_if(mesh.triangles, [&](const Triangle& t) {
-    const Vec3 middle = (1.0 / 3.0) * (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]);
-    return middle.z >= height + depth * std::sin(times * std::atan2(middle.y, middle.x) + at);
-  });
-  return used_part(mesh.vertices, std::move(mesh.triangles));
 }
 
 // The threshold is at the mesh's own faces where caps are in front of these.

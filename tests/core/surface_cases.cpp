@@ -11,11 +11,14 @@
 #include <numbers>
 #include <random>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/certificate/certificate.h"
 #include "core/contour/vertex_places.h"
 #include "core/distance/distance.h"
+#include "core/mesh/used_part.h"
+#include "core/mesh/weld.h"
 
 namespace raycone::test {
 
@@ -125,6 +128,19 @@ double largest_distance_of(const std::vector<Vec3>& points, const TriangleMesh& 
   std::vector<double> distances(points.size());
   DistanceEvaluator(mesh).evaluate(points, distances);
   return *std::ranges::max_element(distances);
+}
+
+TriangleMesh part_of_sphere(int rings, const std::function<bool(const Vec3&)>& has) {
+  TriangleMesh mesh = weld(test::sphere(rings), {});
+  std::erase_if(mesh.triangles, [&](const Triangle& t) {
+    return !has((1.0 / 3.0) * (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]));
+  });
+  return used_part(mesh.vertices, std::move(mesh.triangles));
+}
+
+TriangleMesh bitten_sphere(int rings, double height, double depth, double times, double at) {
+  return part_of_sphere(
+      rings, [&](const Vec3& p) { return p.z < height + depth * std::sin(times * std::atan2(p.y, p.x) + at); });
 }
 
 TriangleMesh cylinder() {

@@ -32,6 +32,15 @@ bool draws_in_box(const SampleRequest& request) {
                              [](const SampleGroup& group) { return std::holds_alternative<UniformSamples>(group); });
 }
 
+// `stores_numbers`: besides those of fields, as points are.
+void refuse_idle_encoding(const Values& values, const FieldOptions& field, const FieldEncoding& encoding,
+                          bool stores_numbers) {
+  if (is_text(encoding.format)) refuse_option(values, "--dtype", kOnCsv);
+  if (!field.has_numbers() && !stores_numbers) refuse_option(values, "--dtype", kNoDigits);
+  if (encoding.format != FieldFormat::kNpz) refuse_flag(values, "--pack-bits", "on this format, expected npz");
+  if (!field.has(Field::kInside)) refuse_flag(values, "--pack-bits", "without --field inside");
+}
+
 }  // namespace
 
 void refuse_idle_rule(const Values& values, const FieldOptions& field, const char* expected) {
@@ -48,15 +57,6 @@ void refuse_idle_parts(const Values& values, const FieldOptions& field) {
 
 void refuse_idle_depfile(const Values& values, const OutputFiles& output) {
   if (output.path == "-") refuse_option(values, "--depfile", "on standard output, expected -o FILE");
-}
-
-// `stores_numbers`: besides those of fields, as points are.
-void refuse_idle_encoding(const Values& values, const FieldOptions& field, const FieldEncoding& encoding,
-                          bool stores_numbers) {
-  if (is_text(encoding.format)) refuse_option(values, "--dtype", kOnCsv);
-  if (!field.has_numbers() && !stores_numbers) refuse_option(values, "--dtype", kNoDigits);
-  if (encoding.format != FieldFormat::kNpz) refuse_flag(values, "--pack-bits", "on this format, expected npz");
-  if (!field.has(Field::kInside)) refuse_flag(values, "--pack-bits", "without --field inside");
 }
 
 void refuse_idle_options(const Values& values, const LatticeCommand& command) {

@@ -75,8 +75,7 @@ class Arrangement::Builder {
     std::vector<std::uint32_t> faces;
     for (const TrianglePair& pair : pairs) faces.insert(faces.end(), pair.begin(), pair.end());
     std::ranges::sort(faces);
-    const auto [first, end] = std::ranges::unique(faces);
-    faces.erase(first, end);
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     for (const std::uint32_t face : faces) groups_[planes.lowest(face)].faces.push_back(group_face(face));
     for (std::size_t n = 0; n < pairs.size(); ++n) {
       for (const std::uint32_t face : pairs[n]) add(contacts[n].ends, groups_[planes.lowest(face)]);

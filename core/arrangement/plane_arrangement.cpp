@@ -26,8 +26,7 @@ std::vector<Segment> all_segments(const PlaneGroup& group) {
     if (from > to) std::swap(from, to);
   }
   std::ranges::sort(segments);
-  const auto [first, end] = std::ranges::unique(segments);
-  segments.erase(first, end);
+  segments.erase(std::unique(segments.begin(), segments.end()), segments.end());
   return segments;
 }
 

@@ -126,7 +126,7 @@ class Neighbours {
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
       const std::span<std::uint32_t> all = std::span(others_).subspan(first_[v], end_[v] - first_[v]);
       std::ranges::sort(all);
-      end_[v] -= std::ranges::unique(all).size();
+      end_[v] = first_[v] + static_cast<std::size_t>(std::unique(all.begin(), all.end()) - all.begin());
     }
   }
   [[nodiscard]] std::span<const std::uint32_t> of(std::uint32_t vertex) const {

@@ -78,13 +78,12 @@ Interval meeting(const Vec3& p, const Vec3& q, const Row& row) {
 // intervals. `edges`: what the sides of edges from a, b and c say.
 void find_samples_on(const std::array<Vec3, 3>& corners, const std::array<EdgeSide, 3>& edges, const Row& row,
                      TriangleCrossing& result) {
-  const auto& [a, b, c] = corners;
   Interval met = kEmptyInterval;
   for (std::size_t n = 0; n < 3; ++n) {
     if (edges[n].tie) met = hull(met, meeting(corners[n], corners[(n + 1) % 3], row));
   }
   if (met.empty()) return;
-  const auto on = [&](std::size_t i) { return on_triangle(a, b, c, row.query(i)); };
+  const auto on = [&](std::size_t i) { return on_triangle(corners[0], corners[1], corners[2], row.query(i)); };
   std::size_t begin = count_below(row.xs, row.samples_per_unit, met.lower);
   std::size_t end = count_up_to(row.xs, row.samples_per_unit, met.upper);
   while (begin < end && !on(begin)) ++begin;

@@ -207,7 +207,7 @@ int ExactPoints::turn(int axis, const Vec3& a, const Vec3& b, Number c) const {
 }
 
 int ExactPoints::axis_to_see(const std::array<Number, 3>& triangle) const {
-  const auto& [a, b, c] = triangle;
+  const Number a = triangle[0], b = triangle[1], c = triangle[2];
   const Vec3 area = absolute(cross(rounded(b) - rounded(a), rounded(c) - rounded(a)));
   std::array<int, 3> axes{0, 1, 2};
   std::ranges::stable_sort(axes, [&](int i, int j) { return area[i] > area[j]; });

@@ -22,7 +22,7 @@ std::size_t count_borders(const std::vector<ExteriorEdge>& edges, std::size_t ve
   std::vector<std::uint32_t> borders;
   for (const ExteriorEdge& e : edges) borders.push_back(sets.lowest(e.from));
   std::ranges::sort(borders);
-  return static_cast<std::size_t>(std::ranges::unique(borders).begin() - borders.begin());
+  return static_cast<std::size_t>(std::unique(borders.begin(), borders.end()) - borders.begin());
 }
 
 // Whether holes are everywhere: what fills them lies across itself then, and is not fitted for all the time it takes.

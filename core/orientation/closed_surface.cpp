@@ -39,7 +39,7 @@ std::vector<SizedFace> largest_faces(const ClosedSurface& surface, const std::ve
 
 // The middles of the parts of a face whose sides are cut in so many.
 void add_middles(const CanonicalFace& face, int parts, std::vector<Vec3>& points) {
-  const auto& [a, b, c] = face.corners;
+  const Vec3 &a = face.corners[0], &b = face.corners[1], &c = face.corners[2];
   const auto add = [&](double i, double j) {
     const double u = i / parts, v = j / parts;
     points.push_back((1 - u - v) * a + u * b + v * c);

@@ -60,8 +60,7 @@ std::vector<Quad> quads_at_crowded_edges(const std::vector<Triangle>& faces, con
     for (const FaceAtEdge& at : edge.faces) add_quads(faces, neighbours, at.face, quads);
   }
   std::ranges::sort(quads);
-  const auto [gone, end] = std::ranges::unique(quads);
-  quads.erase(gone, end);
+  quads.erase(std::unique(quads.begin(), quads.end()), quads.end());
   return quads;
 }
 

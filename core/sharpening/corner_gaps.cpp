@@ -121,7 +121,8 @@ class CornerGaps {
       return fill_gap(loop, input_, limits);
     };
     if (std::optional<FilledGap> fill = filled(gap, faces_at, fill_alone); fill && passed_over-- == 0) return fill;
-    for (const auto& [square, corner] : corners_near(gap, faces_at)) {
+    for (const Corner& near : corners_near(gap, faces_at)) {
+      const Vec3& corner = near.second;
       const auto fill_from = [&](const GapLoop& loop, const GapLimits& limits) {
         return fill_gap_from(corner, loop, input_, limits);
       };

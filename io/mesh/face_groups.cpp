@@ -62,7 +62,8 @@ void GroupCollector::close(std::size_t end) {
 }
 
 std::uint32_t GroupCollector::number_of(const Named& named) {
-  const auto& [text, missing] = named.name;
+  const std::string& text = named.name.text;
+  const std::uint64_t missing = named.name.missing;
   const std::uint64_t hash = joined(hash_of(text), missing);
   if (!named.is_own) {
     const auto [begin, end] = numbers_.equal_range(hash);

@@ -15,6 +15,8 @@
 namespace raycone {
 namespace {
 
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // whose own allocators end the process
+
 // Leaves the C library no block of any size.
 void use_up_memory() {
   const rlimit none{0, 0};
@@ -39,8 +41,6 @@ bool multiplies_integers() {
   }
   return is_right && mpz_sizeinbase(power.get_mpz_t(), 2) == 3247;
 }
-
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // whose own allocators end the process
 
 TEST(IntegerMemory, IsThereWhereTheCLibraryHasNone) {
   const auto run = [] {

@@ -41,6 +41,9 @@ watch() {
   fuzzer=
 }
 
+# Compressed data may ask for 2 GB to decode into, of which little is touched.
+malloc_limit_mb=4096
+
 cmake --preset fuzz >/dev/null
 status=0
 for target in "$@"; do
@@ -48,7 +51,8 @@ for target in "$@"; do
   mkdir -p "build/fuzz/corpus/$target" "build/fuzz/findings"
   log=build/fuzz/$target.log
   build/fuzz/tests/fuzz/fuzz_"$target" -max_len=20000 -timeout=25 -print_final_stats=1 \
-    -artifact_prefix="build/fuzz/findings/$target-" "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" >"$log" 2>&1 &
+    -malloc_limit_mb=$malloc_limit_mb -artifact_prefix="build/fuzz/findings/$target-" \
+    "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" >"$log" 2>&1 &
   fuzzer=$!
   watch
   echo "| $target | $(latest stat::number_of_executed_units) | $(($(date +%s) - start)) s | $edges | $(latest ft) |"

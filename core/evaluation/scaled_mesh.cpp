@@ -109,10 +109,9 @@ std::unique_ptr<const FarField> ScaledMesh::make_far_field() const {
   if (options_.accuracy.sides_only && choice_.has_rough_sums()) {  // they need the tree, too
     if (!blocks().are_sound) return nullptr;
     const LatticeBlocks& sums = blocks().sums;
-    far =
-        std::make_unique<const FarField>(mesh_, boundary_, sources, sums.tree(), sums.tree_tolerance(), options_.level);
+    far = std::make_unique<const FarField>(mesh_, sources, sums.tree(), sums.tree_tolerance(), options_.level);
   } else {
-    far = std::make_unique<const FarField>(mesh_, boundary_, sources, choice_.tolerance_of_far_field(), options_.level);
+    far = std::make_unique<const FarField>(mesh_, sources, choice_.tolerance_of_far_field(), options_.level);
   }
   return !far->has_repeated_faces() && choice_.far_field_pays(far->cost()) ? std::move(far) : nullptr;
 }

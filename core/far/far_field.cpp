@@ -30,15 +30,13 @@ bool far_field_may_pay(double samples, double sources, double direct) {
   return kPreparation < small_part * samples * direct;
 }
 
-FarField::FarField(const Boundary& boundary, const TriangleMesh* caps, SimdLevel level)
-    : boundary_(boundary),
-      kernel_(far_kernel(level)),
+FarField::FarField(const TriangleMesh* caps, SimdLevel level)
+    : kernel_(far_kernel(level)),
       has_caps_(caps != nullptr),
       cap_crossings_(caps ? CapCrossings(*caps) : CapCrossings()) {}
 
-FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh* caps, double tolerance,
-                   SimdLevel level)
-    : FarField(boundary, caps, level) {
+FarField::FarField(const TriangleMesh& mesh, const TriangleMesh* caps, double tolerance, SimdLevel level)
+    : FarField(caps, level) {
   SolidFaces faces = solid_faces(caps ? *caps : mesh);
   faces_repeat_ = faces.has_repeated_faces;
   doubt_ = doubt(tolerance, static_cast<double>(faces.triangles.size()));
@@ -46,9 +44,9 @@ FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const Tri
   set_costs(bounding_box(mesh), tolerance);
 }
 
-FarField::FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh* caps, const SourceTree& tree,
-                   double tolerance, SimdLevel level)
-    : FarField(boundary, caps, level) {
+FarField::FarField(const TriangleMesh& mesh, const TriangleMesh* caps, const SourceTree& tree, double tolerance,
+                   SimdLevel level)
+    : FarField(caps, level) {
   tree_ = &tree;
   doubt_ = doubt(tolerance, static_cast<double>(tree.triangles().size()));
   set_costs(bounding_box(mesh), tolerance);

@@ -26,14 +26,13 @@ namespace raycone {
 class FarField final : public WindingNumberEngine {
  public:
   // Of a mesh in scale: coordinates of at most 1. The far field is off by at most `tolerance` turns, positive, what it
-  // rounds included. `boundary`: of the mesh; `caps`: of the boundary, null where the triangles of the mesh are the
-  // sources. Both must outlive this. Needs DefaultFloatingPoint.
-  FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh* caps, double tolerance,
-           SimdLevel level);
+  // rounds included. `caps`: of the mesh's boundary, null where the triangles of the mesh are the sources. They must
+  // outlive this. Needs DefaultFloatingPoint.
+  FarField(const TriangleMesh& mesh, const TriangleMesh* caps, double tolerance, SimdLevel level);
   // The same where there is a tree of the sources, made with this tolerance. It must outlive this, too. Precondition:
   // no source is repeated.
-  FarField(const TriangleMesh& mesh, const Boundary& boundary, const TriangleMesh* caps, const SourceTree& tree,
-           double tolerance, SimdLevel level);
+  FarField(const TriangleMesh& mesh, const TriangleMesh* caps, const SourceTree& tree, double tolerance,
+           SimdLevel level);
 
   // Whether a face or a cap is there so often that its error, multiplied, would show: then do not use this.
   [[nodiscard]] bool has_repeated_faces() const { return faces_repeat_; }
@@ -60,10 +59,9 @@ class FarField final : public WindingNumberEngine {
 
  private:
   // What both have; without the tree.
-  FarField(const Boundary& boundary, const TriangleMesh* caps, SimdLevel level);
+  FarField(const TriangleMesh* caps, SimdLevel level);
   void set_costs(const Box& box, double tolerance);
 
-  const Boundary& boundary_;
   FarKernel kernel_;
   bool has_caps_;
   CapCrossings cap_crossings_;

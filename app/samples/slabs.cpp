@@ -20,6 +20,14 @@ std::int64_t floor_to_multiple(std::int64_t value, std::int64_t of) {
   return value - (remainder < 0 ? remainder + of : remainder);
 }
 
+// Whether a band of so many voxels holds all samples, wherever the surface is: that of --band all is as wide as the
+// lattice is long from corner to corner, or wider.
+bool is_everywhere(double band, const Lattice& lattice) {
+  constexpr double kRounding = 1e-9;
+  const auto side = [&](std::size_t axis) { return static_cast<double>(lattice.counts[axis] - 1); };
+  return band * (1 + kRounding) >= std::hypot(side(0), side(1), side(2)) || !cuts_off(band, lattice);
+}
+
 double grid_memory(const Lattice& lattice, const FieldDescription& field, const OutputDescription& description,
                    bool open) {
   const double layer = static_cast<double>(lattice.counts[0]) * static_cast<double>(lattice.counts[1]);
@@ -33,7 +41,7 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
     case FieldKind::kDensity:
       return real_bytes * ((open ? samples : at_surface) + blocks_in_the_making);
     case FieldKind::kDistance: {
-      const bool all = !cuts_off(field.background / lattice.spacing.x, lattice);
+      const bool all = is_everywhere(field.background / lattice.spacing.x, lattice);
       return real_bytes * ((all ? samples : at_surface) + blocks_in_the_making);
     }
     case FieldKind::kVector:

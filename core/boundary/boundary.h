@@ -42,6 +42,8 @@ class Boundary {
   // All edges, as ExteriorEdge says, with positive multiplicities.
   [[nodiscard]] std::vector<DirectedEdge> directed_edges() const;
 
+  static constexpr double kMostDoubt = 0.125;  // turns
+
   // Which sample of a tile, and a number that its winding number may be on the wrong side of.
   struct ToSettle {
     std::size_t sample;
@@ -58,7 +60,6 @@ class Boundary {
   // DefaultFloatingPoint. Thread-safe.
   void bound_errors(SampleTile& samples, std::span<const double> w, std::span<const std::int64_t> crossings,
                     std::span<double> bounds) const;
-  static constexpr double kMostDoubt = 0.125;  // turns
 
  private:
   void add_chains(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges);

@@ -10,7 +10,7 @@ namespace {
 
 // In double, the argument of a product of three factors next to an edge is off by up to 1.6e-14 turns. Values are
 // expected to be right within 1e-12. Times more than this it would show; edges that so many faces share are rare enough
-// for 64 bits.
+// for the enclosure.
 constexpr std::int32_t kLargestInDouble = 32;
 
 void add_enclosed(const ChainGroup& group, SampleTile& samples, std::span<Turns> cone) {

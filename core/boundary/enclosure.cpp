@@ -4,6 +4,7 @@
 #include <quadmath.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 
@@ -19,6 +20,10 @@ const Quad kTurn = 8 * atanq(1);
 
 TurnsWithin turns_of(const Factor<Quad>& product, std::int64_t turns, Quad error) {
   return {turns, atan2q(product.im, product.re) / kTurn, error / kTurn};
+}
+
+Quad part_of(double high, double low) {
+  return std::abs(high) < kNoPart ? Quad(std::copysign(0.0, high)) : Quad(high) + low;
 }
 
 // The product of factors, the turns completed, and a bound of its argument's error.
@@ -79,7 +84,7 @@ void enclose_in_106_bits(std::span<const ChainGroup> groups, SampleTile& samples
   for (const ChainGroup& group : groups) {
     multiply_pairs(group.steps, samples, z);
     for (std::size_t i = 0; i < cones.size(); ++i) {
-      const Factor<Quad> product{Quad(z.re_high[i]) + z.re_low[i], Quad(z.im_high[i]) + z.im_low[i]};
+      const Factor<Quad> product{part_of(z.re_high[i], z.re_low[i]), part_of(z.im_high[i], z.im_low[i])};
       add(group, turns_of(product, static_cast<std::int64_t>(z.turns[i]), z.error[i]), cones[i]);
     }
   }

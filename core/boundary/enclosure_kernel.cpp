@@ -31,9 +31,9 @@ namespace raycone {
 namespace {
 
 constexpr double kRounding = 0x1p-100;  // what an operation of DoubleDouble is off by at most, relative
-// Parts of products that are smaller count as this much: sums of DoubleDouble do not keep the sign of 0, which tells
-// half a turn from minus half a turn.
-constexpr double kTiny = 0x1p-300;
+// A part that is 0, or less than this, counts as this much: sums of DoubleDouble do not keep the sign of 0, which tells
+// half a turn from minus half a turn. Where it is so small beside the other part, it adds less than kNoPart in the end.
+constexpr double kTiny = 0x1p-1000;
 
 // A factor, and a bound of its argument's error in radians.
 struct PairFactor {
@@ -46,7 +46,7 @@ DoubleDouble rounded_pair(Quad x) {
   return {high, static_cast<double>(x - high)};
 }
 
-// The same argument but for 2^-298, the larger part in [1, 2).
+// The same argument but for 2^-998 and the sign of im, the larger part in [1, 2).
 PairFactor normalized(const Factor<Quad>& f, double error) {
   constexpr double kLargest = 0x1p1000;
   const DoubleDouble re = rounded_pair(f.re), im = rounded_pair(f.im);
@@ -55,7 +55,7 @@ PairFactor normalized(const Factor<Quad>& f, double error) {
   const double scale = std::scalbn(1.0, -std::ilogb(largest));
   const auto part = [&](const DoubleDouble& x) {
     const double high = scale * x.high;
-    return std::abs(high) > kTiny ? DoubleDouble{high, scale * x.low} : DoubleDouble{std::copysign(kTiny, high)};
+    return std::abs(high) > kTiny ? DoubleDouble{high, scale * x.low} : DoubleDouble{kTiny};
   };
   return {part(re), part(im), error};
 }

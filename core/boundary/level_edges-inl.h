@@ -13,8 +13,8 @@ namespace raycone {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Where an edge is level with a ray as a whole and does not meet its line: it is a tie without a factor, as in
-// tied_factor(). Flat meshes have many of these in their plane.
+// Where an edge is level with a ray as a whole and does not meet its line: it is a tie without a factor, one of
+// those that tied_factor() leaves out. Flat meshes have many of these in their plane.
 HWY_INLINE LaneMask is_level_beside(Lanes a_y, Lanes a_z, Lanes b_y, Lanes b_z) {
   const auto is_zero = [](Lanes v, Lanes w) { return hn::And(hn::Eq(v, hn::Zero(d)), hn::Eq(w, hn::Zero(d))); };
   const auto same_side = [](Lanes v, Lanes w) {

@@ -44,6 +44,7 @@ void FillFaces::put_back() {
   surface_.mesh.triangles.insert(surface_.mesh.triangles.end(), faces_.begin(), faces_.end());
   surface_.sources.resize(surface_.mesh.triangles.size(), kHole);
   faces_.clear();
+  changed_.clear();
   sides_.clear();
   inner_.clear();
 }

@@ -18,7 +18,7 @@ std::uint64_t count_of(const SampleGroup& group) {
   return std::visit([](const auto& one) { return one.count; }, group);
 }
 
-// Twice the area along each axis, each part rounded once, to 53 bits or more: its exponents are those of any triangle.
+// Twice the area along each axis, each part rounded to 53 bits or more: its exponents are those of any triangle.
 struct AreaVector {
   long double x, y, z;
 };

@@ -44,7 +44,7 @@ class PointSampler {
   // The same, with the number of the triangle that each point of SurfaceSamples lies on; -1 of other groups.
   void draw(std::uint64_t first, std::span<Vec3> points, std::span<std::int64_t> faces) const;
 
-  // Of the triangles that draw() tells of: of length 1, as they face; 0 for -1. As many threads.
+  // Of the triangles that draw() tells of: of length 1, as they face; 0 for -1. Uses as many threads as draw().
   void set_normals(std::span<const std::int64_t> faces, std::span<Vec3> normals) const;
 
  private:

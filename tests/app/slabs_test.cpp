@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <cstdint>
+
 #include "tests/support/output_checks.h"
 
 namespace raycone::test {
@@ -79,6 +83,21 @@ TEST(WriterMemory, CountsTheGridOfAnOpenMeshInFull) {
   description.precision = Precision::kDouble;
   EXPECT_EQ(writer_memory(lattice, FieldFormat::kVdb, description, kOpen), 8e9 + 8 * 8e6);
   EXPECT_LT(writer_memory(lattice, FieldFormat::kVdb, {}, kClosed), 1e8);
+}
+
+// --band all asks for a band as wide as the lattice is long from corner to corner.
+TEST(WriterMemory, CountsDistancesInFullWhereTheBandIsEverywhere) {
+  const auto of_band = [](const std::array<std::int64_t, 3>& counts, double band) {
+    Lattice lattice;
+    lattice.spacing = {1, 1, 1};
+    lattice.counts = counts;
+    OutputDescription description;
+    description.fields = {{"sdf", "sdf", "surface", FieldKind::kDistance, band, ""}};
+    return writer_memory(lattice, FieldFormat::kVdb, description, kClosed);
+  };
+  EXPECT_EQ(of_band({400, 400, 400}, std::hypot(399, 399, 399)), 4 * 64e6 + 4 * 8 * 160e3);
+  EXPECT_EQ(of_band({10, 10, 4000}, std::hypot(9, 9, 3999)), 4 * 400e3 + 4 * 8 * 100) << "less than the longest side";
+  EXPECT_LT(of_band({400, 400, 400}, 3), 2e7);
 }
 
 TEST(WriterMemory, CountsFlagsAtTheSurfaceOnly) {

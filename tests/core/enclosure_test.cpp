@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include "core/boundary/boundary.h"
 #include "core/boundary/enclosure_kernel.h"
 #include "core/data/rule.h"
+#include "core/evaluation/winding_number.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
@@ -146,6 +148,40 @@ TEST(Enclosures, OfManyEdgesAreCloseStill) {
   EXPECT_LT(expect_agreement(enclose_both(boundary, places)), kIndistinguishable);
 }
 
+// As large as the analysis says: 40 e for each factor, whose condition is 1 or more, and 4 e for each product. True
+// errors are a thousandth of that, so that no comparison with them would notice less.
+TEST(Enclosures, HaveBoundsOfAllRoundings) {
+  Random random(6);
+  for (int i = 0; i < 20; ++i) {
+    const Boundary boundary(weld(test::soup(random, 8), {}));
+    std::vector<Vec3> places;
+    for (int n = 0; n < 20; ++n) places.push_back(test::uniform_point(random, {{-1, -1, -1}, {2, 2, 2}}));
+    const Enclosures found = enclose_both(boundary, places);
+    const double least = 44 * 0x1p-100 * boundary.total_multiplicity() / (2 * std::numbers::pi);
+    for (const TurnsWithin& close : found.close) {
+      EXPECT_GE(bound_of(close), least * (1 - 1e-9));
+      EXPECT_LE(bound_of(close), least * 64);  // conditions are below that
+    }
+  }
+}
+
+// An edge that a ray does not meet adds nothing, and 0 is 0, whatever stands for it meanwhile.
+TEST(Enclosures, OfNothingAreZero) {
+  TriangleMesh flat;
+  flat.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  flat.triangles = {{0, 1, 2}};
+  const Enclosures found = enclose_both(Boundary(flat), {{5, 0.25, 0}, {-5, 0.25, 0}, {0.5, 7, 0}});
+  for (const TurnsWithin& close : found.close) {
+    const Quad distance = close.rest < 0 ? -close.rest : close.rest;
+    EXPECT_TRUE(distance == 0 || distance == Quad(0.5)) << static_cast<double>(close.rest);
+  }
+  TriangleMesh copies = flat;
+  copies.triangles.assign(33, {0, 1, 2});  // so many that values come from here
+  std::vector<double> w(3);
+  WindingNumberEvaluator(copies).evaluate(std::vector<Vec3>{{5, 0.25, 0}, {-5, 0.25, 0}, {0.5, 7, 0}}, w);
+  for (const double value : w) EXPECT_EQ(value, 0.0);
+}
+
 // Of all levels, and of a sample whatever else is in its tile.
 TEST(Enclosures, HaveTheSameBitsInAnyLanes) {
   const DefaultFloatingPoint guard;
@@ -158,7 +194,8 @@ TEST(Enclosures, HaveTheSameBitsInAnyLanes) {
       for (std::size_t n = 0; n < places.size(); ++n) {
         SampleTile alone, among;
         alone.add(places[n]);
-        for (std::size_t k = 0; k <= n % kTile; ++k) among.add(places[n - k]);
+        const std::size_t at = n % kTile;
+        for (std::size_t k = n - at; k <= n; ++k) among.add(places[k]);
         alone.fill_up();
         among.fill_up();
         PairProductTile expected, found;
@@ -166,12 +203,12 @@ TEST(Enclosures, HaveTheSameBitsInAnyLanes) {
         for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2, SimdLevel::kAvx512}) {
           if (!is_available(level)) continue;
           enclosure_kernel(level)(group.steps, among, found);
-          EXPECT_EQ(found.re_high[0], expected.re_high[0]);
-          EXPECT_EQ(found.re_low[0], expected.re_low[0]);
-          EXPECT_EQ(found.im_high[0], expected.im_high[0]);
-          EXPECT_EQ(found.im_low[0], expected.im_low[0]);
-          EXPECT_EQ(found.turns[0], expected.turns[0]);
-          EXPECT_EQ(found.error[0], expected.error[0]);
+          EXPECT_EQ(found.re_high[at], expected.re_high[0]);
+          EXPECT_EQ(found.re_low[at], expected.re_low[0]);
+          EXPECT_EQ(found.im_high[at], expected.im_high[0]);
+          EXPECT_EQ(found.im_low[at], expected.im_low[0]);
+          EXPECT_EQ(found.turns[at], expected.turns[0]);
+          EXPECT_EQ(found.error[at], expected.error[0]);
         }
       }
     }

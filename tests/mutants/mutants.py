@@ -389,9 +389,12 @@ MUTANTS = [
          "lower_bound(runs_, sample, {}, &RowPrefix::samples)")]),
     Mutant("enclosure_in_double", "differences to the query are exact", [
         ("core/boundary/enclosure_kernel.cpp", "const Pair y = exact_sum(hn::Set(d, v.y), hn::Neg(q.y))", "const Pair y{hn::Sub(hn::Set(d, v.y), q.y), hn::Zero(d)}")]),
-    Mutant("enclosure_loses_signs", "the sign of 0 tells half a turn from minus half a turn", [
-        ("core/boundary/enclosure_kernel.cpp", "DoubleDouble{std::copysign(kTiny, high)}", "DoubleDouble{kTiny}"),
-        ("core/boundary/enclosure_kernel.cpp", "{hn::CopySign(tiny, x.high), hn::Zero(d)}", "{tiny, hn::Zero(d)}")]),
+    Mutant("enclosure_loses_signs", "what no factor is trusted with has the sign of its side", [
+        ("core/boundary/enclosure_kernel.cpp", "if (std::signbit(f.im.high) != ((reversed ? -side.sign : side.sign) < 0)) f.im = -f.im;", "")]),
+    Mutant("enclosure_of_nothing", "what stands for 0 is 0 in the end", [
+        ("core/boundary/enclosure.cpp", "std::abs(high) < kNoPart ?", "std::abs(high) < 0 ?")]),
+    Mutant("enclosure_products_round_nothing", "a product rounds, too", [
+        ("core/boundary/enclosure_kernel.cpp", "hn::Set(d, 4 * kRounding));", "hn::Zero(d));")]),
     Mutant("enclosure_is_always_plain", "near an edge z cancels, in pairs of doubles, too", [
         ("core/boundary/enclosure_kernel.cpp", "hn::Lt(condition, most_condition)", "hn::Gt(condition, hn::Zero(d))")]),
     Mutant("enclosure_bounds_nothing", "what a factor is off by grows with its condition", [

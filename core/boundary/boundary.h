@@ -42,7 +42,7 @@ class Boundary {
   // All edges, as ExteriorEdge says, with positive multiplicities.
   [[nodiscard]] std::vector<DirectedEdge> directed_edges() const;
 
-  static constexpr double kMostDoubt = 0.125;  // turns
+  static constexpr double kMostDoubt = 0.125;  // of a value that settle() takes, turns
 
   // Which sample of a tile, and a number that its winding number may be on the wrong side of.
   struct ToSettle {

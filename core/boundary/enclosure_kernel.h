@@ -9,10 +9,11 @@
 
 namespace raycone {
 
-// Per sample the product of the factors, the larger part in [1, 2), the turns that its argument has completed, and a
-// bound of that argument's error in radians: infinite where a factor is out of the range of pairs of doubles. A part
-// below kNoPart stands for 0, with its sign.
+// A part of a product that is below this stands for 0, with its sign.
 inline constexpr double kNoPart = 0x1p-900;
+
+// Per sample the product of the factors, the larger part in [1, 2), the turns that its argument has completed, and a
+// bound of that argument's error in radians: infinite where a factor is out of the range of pairs of doubles.
 struct PairProductTile {
   alignas(64) Tile re_high, re_low;
   alignas(64) Tile im_high, im_low;

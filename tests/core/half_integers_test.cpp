@@ -218,6 +218,19 @@ TEST(HalfIntegers, AreNotThoseOfARimThatIsNearlyFlat) {
   }
 }
 
+// The ray of the query meets an edge whose factor is beyond what pairs of doubles are trusted with: 113 bits tell.
+TEST(HalfIntegers, AreToldWhereAFactorIsOutOfRange) {
+  for (const double by : {0x1p-43, -0x1p-43}) {
+    TriangleMesh cup;
+    cup.vertices = {{0.75, 0, 0},    {0.75, 1e-305, 0}, {0.5, 0.6, 0},   {-0.7, 0.5, by},
+                    {-0.6, -0.7, 0}, {0.5, -0.6, 0},    {0.03, 0.07, -1}};
+    for (std::uint32_t n = 0; n < 6; ++n) cup.triangles.push_back({n, 6, (n + 1) % 6});
+    const double w = evaluate(cup, {{0.125, 0, 0}})[0];
+    EXPECT_EQ(w > 0.5, by > 0);
+    EXPECT_EQ(w < 0.5, by < 0);
+  }
+}
+
 // From the rim of a sheet that rises by 2^-43 along the rays, the perturbed query sees it under that angle: the value
 // misses 1/2 by it.
 TEST(HalfIntegers, AreMissedByTheAngleOfASheetAtItsRim) {

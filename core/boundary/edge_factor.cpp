@@ -79,4 +79,21 @@ std::optional<Factor<double>> edge_factor(const Vec3& a, const Vec3& b, bool rev
   return scaled({f->re, std::copysign(f->im, reversed ? -side.sign : side.sign)});
 }
 
+std::optional<NearEdgeFactor<Quad>> close_edge_factor(const Vec3& a, const Vec3& b, bool reversed, const Vec3& q) {
+  const EdgeSide side = edge_side(a, b, q);
+  if (side.sign == 0) return std::nullopt;
+  NearEdgeFactor<Quad> result{{}, 0};
+  if (side.tie) {
+    const std::optional<Factor<Quad>> f = tied_factor<Quad>(a, b, q);
+    if (!f) return std::nullopt;
+    result.factor = *f;
+  } else {
+    result = near_edge_factor<Quad>(a, b, q);
+  }
+  Quad& im = result.factor.im;
+  im = im == 0 ? 0 : absolute(im);
+  if ((reversed ? -side.sign : side.sign) < 0) im = -im;
+  return result;
+}
+
 }  // namespace raycone

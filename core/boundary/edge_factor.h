@@ -5,6 +5,7 @@
 
 #include "core/boundary/near_edge.h"
 #include "core/exact/predicates.h"
+#include "core/exact/quad.h"
 
 namespace raycone {
 
@@ -19,5 +20,9 @@ namespace raycone {
 // rounded once to Real; the sign of Im is that of edge_side(). Nothing where the argument is 0.
 template <class Real>  // long double or Quad, for their exponents: nothing over- or underflows
 [[nodiscard]] std::optional<Factor<Real>> tied_factor(const Vec3& a, const Vec3& b, const Vec3& q);
+
+// edge_factor() in 113 bits, of any magnitude, with a bound of its argument's error in radians.
+[[nodiscard]] std::optional<NearEdgeFactor<Quad>> close_edge_factor(const Vec3& a, const Vec3& b, bool reversed,
+                                                                    const Vec3& q);
 
 }  // namespace raycone

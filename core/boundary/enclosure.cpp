@@ -10,8 +10,6 @@
 
 #include "core/boundary/edge_factor.h"
 #include "core/boundary/enclosure_kernel.h"
-#include "core/boundary/near_edge.h"
-#include "core/exact/predicates.h"
 
 namespace raycone {
 namespace {
@@ -43,25 +41,13 @@ struct QuadProduct {
   }
 };
 
-void multiply_edge(QuadProduct& product, const Vec3& a, const Vec3& b, bool reversed, const Vec3& q) {
-  const EdgeSide side = edge_side(a, b, q);
-  if (side.sign == 0) return;
-  const auto with_sign = [&](const Factor<Quad>& f) {
-    return Factor<Quad>{f.re, copysignq(f.im, reversed ? -side.sign : side.sign)};
-  };
-  if (side.tie) {
-    if (const auto f = tied_factor<Quad>(a, b, q)) product.multiply(with_sign(*f), 0);
-    return;
-  }
-  const NearEdgeFactor<Quad> f = near_edge_factor<Quad>(a, b, q);
-  product.multiply(with_sign(f.factor), f.error);
-}
-
 TurnsWithin enclose_in_113(const ChainGroup& group, const Vec3& q) {
   QuadProduct product;
   for (std::size_t i = 1; i < group.steps.size(); ++i) {
     const ChainStep& step = group.steps[i];
-    if (step.joined) multiply_edge(product, group.steps[i - 1].to, step.to, step.reversed, q);
+    if (!step.joined) continue;
+    if (const auto f = close_edge_factor(group.steps[i - 1].to, step.to, step.reversed, q))
+      product.multiply(f->factor, f->error);
   }
   return turns_of(product.z, product.turns, product.error);
 }

@@ -7,12 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <optional>
 
 #include "core/boundary/edge_factor.h"
 #include "core/boundary/near_edge.h"
 #include "core/exact/double_double.h"
-#include "core/exact/predicates.h"
 #include "core/exact/quad.h"
 
 // Highway compiles what is between its markers once per SIMD level.
@@ -46,34 +44,18 @@ DoubleDouble rounded_pair(Quad x) {
   return {high, static_cast<double>(x - high)};
 }
 
-// The same argument but for 2^-998 and the sign of im, the larger part in [1, 2).
-PairFactor normalized(const Factor<Quad>& f, double error) {
+// The same argument but for 2^-998, the larger part in [1, 2).
+PairFactor normalized(const NearEdgeFactor<Quad>& close) {
   constexpr double kLargest = 0x1p1000;
-  const DoubleDouble re = rounded_pair(f.re), im = rounded_pair(f.im);
+  const DoubleDouble re = rounded_pair(close.factor.re), im = rounded_pair(close.factor.im);
   const double largest = std::max(std::abs(re.high), std::abs(im.high));
   if (!(largest > 1 / kLargest && largest < kLargest)) return {{1}, {kTiny}, std::numeric_limits<double>::infinity()};
   const double scale = std::scalbn(1.0, -std::ilogb(largest));
   const auto part = [&](const DoubleDouble& x) {
     const double high = scale * x.high;
-    return std::abs(high) > kTiny ? DoubleDouble{high, scale * x.low} : DoubleDouble{kTiny};
+    return std::abs(high) > kTiny ? DoubleDouble{high, scale * x.low} : DoubleDouble{std::copysign(kTiny, high)};
   };
-  return {part(re), part(im), error};
-}
-
-// Of an edge whose plain factor is not trusted; nothing where its argument is 0.
-std::optional<PairFactor> careful_factor(const Vec3& a, const Vec3& b, bool reversed, const Vec3& q) {
-  const EdgeSide side = edge_side(a, b, q);
-  if (side.sign == 0) return std::nullopt;
-  const auto with_sign = [&](PairFactor f) {
-    if (std::signbit(f.im.high) != ((reversed ? -side.sign : side.sign) < 0)) f.im = -f.im;
-    return f;
-  };
-  if (side.tie) {
-    const std::optional<Factor<Quad>> f = tied_factor<Quad>(a, b, q);
-    return f ? std::optional(with_sign(normalized(*f, kRounding))) : std::nullopt;
-  }
-  const NearEdgeFactor<Quad> near = near_edge_factor<Quad>(a, b, q);
-  return with_sign(normalized(near.factor, static_cast<double>(near.error) + kRounding));
+  return {part(re), part(im), static_cast<double>(close.error) + kRounding};
 }
 
 }  // namespace
@@ -166,7 +148,8 @@ HWY_NOINLINE FactorLanes with_careful_lanes(const FactorLanes& plain, LaneMask t
   const std::uint32_t bits = bits_of(trusted);
   for (std::size_t lane = 0; lane < std::min(hn::Lanes(d), samples.count - i); ++lane) {
     if ((bits >> lane) & 1U) continue;
-    const PairFactor f = careful_factor(a, b, reversed, samples.query(i + lane)).value_or(PairFactor{{1}, {kTiny}, 0});
+    const auto close = close_edge_factor(a, b, reversed, samples.query(i + lane));
+    const PairFactor f = close ? normalized(*close) : PairFactor{{1}, {kTiny}, 0};
     re_high[lane] = f.re.high;
     re_low[lane] = f.re.low;
     im_high[lane] = f.im.high;

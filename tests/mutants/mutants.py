@@ -389,8 +389,8 @@ MUTANTS = [
          "lower_bound(runs_, sample, {}, &RowPrefix::samples)")]),
     Mutant("enclosure_in_double", "differences to the query are exact", [
         ("core/boundary/enclosure_kernel.cpp", "const Pair y = exact_sum(hn::Set(d, v.y), hn::Neg(q.y))", "const Pair y{hn::Sub(hn::Set(d, v.y), q.y), hn::Zero(d)}")]),
-    Mutant("enclosure_loses_signs", "what no factor is trusted with has the sign of its side", [
-        ("core/boundary/enclosure_kernel.cpp", "if (std::signbit(f.im.high) != ((reversed ? -side.sign : side.sign) < 0)) f.im = -f.im;", "")]),
+    Mutant("enclosure_loses_signs", "in 113 bits, too, a factor has the sign of its side", [
+        ("core/boundary/edge_factor.cpp", "if ((reversed ? -side.sign : side.sign) < 0) im = -im;", "")]),
     Mutant("enclosure_of_nothing", "what stands for 0 is 0 in the end", [
         ("core/boundary/enclosure.cpp", "std::abs(high) < kNoPart ?", "std::abs(high) < 0 ?")]),
     Mutant("enclosure_products_round_nothing", "a product rounds, too", [

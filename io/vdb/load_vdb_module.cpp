@@ -92,6 +92,13 @@ void require_what_loading_takes(const std::string& name) {
   require_room(16 * kMegabyte, PROT_READ | PROT_WRITE);
 }
 
+// OpenVDB's log library, where it has one, starts four threads that never do anything. A batch has many processes that
+// wait, and `--threads` is a promise about all of them.
+void end_idle_threads(void* library) {
+  constexpr const char* kShutdown = "_ZN9log4cplus18shutdownThreadPoolEv";  // Debian has its header in another package
+  if (void* const shutdown = dlsym(library, kShutdown)) reinterpret_cast<void (*)()>(shutdown)();
+}
+
 std::atomic<bool> is_loaded = false;
 
 // `name`: the file that asks for it. Throws std::bad_alloc, UnavailableError, and Error where the module cannot be
@@ -106,6 +113,7 @@ const vdb::Module& vdb_module(const std::string& name) {
   void* const library = dlopen(module_path().c_str(), RTLD_LAZY | RTLD_LOCAL);
   const void* const symbol = library ? dlsym(library, vdb::kModuleSymbol) : nullptr;
   if (symbol) {
+    end_idle_threads(library);
     is_loaded = true;
     return *(loaded = static_cast<const vdb::Module*>(symbol));
   }

@@ -38,8 +38,8 @@ class FieldEvaluator {
   // The closed surface that solid distances are to: needed before evaluate() where they are wanted.
   void set_solid(const TriangleMesh& surface) { solid_.emplace(surface, simd_); }
 
-  // Builds the search structures of points. Lattices need that of distances alone, which evaluate() builds without
-  // this.
+  // Builds the search structures of points, that of winding numbers where it is for many. Lattices need that of
+  // distances alone, which evaluate() builds without this.
   void prepare_points() const;
 
   // Fills `samples`, made for the options of this, with all fields of a block or of finite points. On lattices, which

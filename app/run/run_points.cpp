@@ -6,12 +6,14 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
+#include <new>
 #include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
+#include "app/input/run_limits.h"
 #include "app/input/written_files.h"
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
@@ -62,9 +64,14 @@ bool draws_single(const PointsCommand& command) {
 }
 
 // Null where points are to be drawn, which takes the mesh.
-std::unique_ptr<PointReader> open_given_points(const PointsCommand& command) {
+std::unique_ptr<PointReader> open_given_points(const PointsCommand& command, const RunLimits& limits) {
   if (command.sample) return nullptr;
-  std::unique_ptr<PointReader> reader = open_points(command.points, command.reading);
+  std::unique_ptr<PointReader> reader;
+  try {
+    reader = open_points(command.points, command.reading);
+  } catch (const std::bad_alloc&) {
+    rethrow_as_limit(command.points, &limits);
+  }
   if (command.reading.columns && !reader->has_columns()) {
     throw UsageError("--columns: has no effect on " + command.points + ", which is no text");
   }
@@ -74,7 +81,7 @@ std::unique_ptr<PointReader> open_given_points(const PointsCommand& command) {
 // About how many there are, to prepare for. What comes through a pipe may be a few questions: preparing for many would
 // keep them waiting.
 double expected_points(const PointReader& reader, const std::string& path) {
-  constexpr double kInPipe = 1e4;
+  constexpr auto kInPipe = static_cast<double>(kFewPoints);
   constexpr double kBytes = 25;  // of a line of text
   if (const std::optional<std::uint64_t> size = reader.size()) return static_cast<double>(*size);
   std::error_code error;
@@ -114,12 +121,13 @@ std::unique_ptr<PointWriter> open_writer(const PointsCommand& command, const Poi
 }
 
 void prepare(const PointsCommand& command, TriangleMesh mesh, LabelledParts* parts, MeshRun& run, PointWork& work) {
-  check_points_memory(command.mesh, run.report.faces, command.field, run.limits());
+  const double points = expected_points(*work.reader, command.sample ? "-" : command.points);
+  const bool may_be_many = points >= static_cast<double>(kFewPoints);
+  if (may_be_many) check_points_memory(command.mesh, run.report.faces, command.field, run.limits());
   const auto known = static_cast<double>(work.reader->size().value_or(0));
   check_verify_memory(command.mesh, command.field, known, run.limits());
   if (parts) check_parts_memory(command.mesh, parts->size(), run.limits());
   work.writer = open_writer(command, *work.reader, run);
-  const double points = expected_points(*work.reader, command.sample ? "-" : command.points);
   if (parts) work.labels.emplace(*parts, command.field, points, run);
   work.field = command.field;
   if (command.field.labels_only()) {
@@ -170,7 +178,7 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   MeshRun run(command.mesh, command.output, command.run, inputs_of(command), limits);
   RunReport& report = run.report;
   PointWork work;
-  work.reader = timed(report.seconds.read, [&] { return open_given_points(command); });
+  work.reader = timed(report.seconds.read, [&] { return open_given_points(command, limits); });
   std::optional<LabelledParts> parts;
   TriangleMesh mesh = load(command, run, parts);
   if (!command.sample) report.files_read.push_back(command.points);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 #include "core/crossings/row.h"
 #include "core/data/vec3.h"
@@ -25,6 +26,12 @@ struct TriangleCrossing {
   std::size_t met = 0;
   std::size_t on_begin = 0;  // the samples [on_begin, on_end) lie on the closed triangle
   std::size_t on_end = 0;
+};
+
+// A ray, by its number among others, and a triangle that it may cross or tie with.
+struct RayCandidate {
+  std::uint32_t query;
+  std::uint32_t triangle;
 };
 
 // Exact. `plane` is that of the triangle; nullptr: predicates alone decide, which is cheaper for a single sample. Needs

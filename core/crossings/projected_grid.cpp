@@ -109,7 +109,7 @@ void ProjectedGrid::find_places(std::span<const Vec3> queries, std::span<Place> 
 // Some rays that go through each step together: what the next step needs is fetched meanwhile.
 class ProjectedGrid::Lookup {
  public:
-  Lookup(const ProjectedGrid& grid, std::span<std::int64_t> n, std::vector<Doubtful>& doubtful)
+  Lookup(const ProjectedGrid& grid, std::span<std::int64_t> n, std::vector<RayCandidate>& doubtful)
       : grid_(grid), n_(n), doubtful_(doubtful), coordinates_(grid), root_(grid.grids_.front()) {}
 
   static constexpr std::size_t kRays = 64;
@@ -257,7 +257,7 @@ class ProjectedGrid::Lookup {
 
   const ProjectedGrid& grid_;
   std::span<std::int64_t> n_;
-  std::vector<Doubtful>& doubtful_;
+  std::vector<RayCandidate>& doubtful_;
   Coordinates coordinates_;
   RootCells root_;
   std::size_t rays_ = 0, pairs_ = 0;
@@ -268,7 +268,7 @@ class ProjectedGrid::Lookup {
 };
 
 void ProjectedGrid::crossings(std::span<const Vec3> queries, std::span<std::int64_t> n,
-                              std::vector<Doubtful>& doubtful) const {
+                              std::vector<RayCandidate>& doubtful) const {
   std::ranges::fill(n, 0);
   Lookup lookup(*this, n, doubtful);
   for (std::size_t first = 0; first < queries.size(); first += Lookup::kRays) {

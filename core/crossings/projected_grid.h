@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/crossings/crossings.h"
 #include "core/data/triangle_mesh.h"
 #include "core/exact/scale.h"
 
@@ -21,16 +22,11 @@ class ProjectedGrid {
   // Precondition: at least one triangle.
   explicit ProjectedGrid(const TriangleMesh& mesh);
 
-  // A ray and a triangle that single precision cannot decide about.
-  struct Doubtful {
-    std::uint32_t query;  // its number
-    std::uint32_t triangle;
-  };
-
   // Sets n[i] to the sum of the signs of those crossings of the ray {queries[i] + t x, t >= 0} that are certain.
-  // Appends each other triangle once that the ray may cross, and each whose closed box it meets and that has an edge
-  // with D = 0 or holds the query. Precondition: less than 2^32 queries. Thread-safe.
-  void crossings(std::span<const Vec3> queries, std::span<std::int64_t> n, std::vector<Doubtful>& doubtful) const;
+  // Appends each other triangle once that the ray may cross, where single precision cannot decide, and each whose
+  // closed box it meets and that has an edge with D = 0 or holds the query. Precondition: less than 2^32 queries.
+  // Thread-safe.
+  void crossings(std::span<const Vec3> queries, std::span<std::int64_t> n, std::vector<RayCandidate>& doubtful) const;
 
   // Calls visit(i) once for each triangle i that the ray {q + t x, t >= 0} may cross or that may hold q. Thread-safe.
   template <class Visit>

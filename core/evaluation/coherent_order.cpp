@@ -50,14 +50,14 @@ CoherentOrder::Keys CoherentOrder::keys_in_blocks(const ScaledMesh& mesh, const 
 
 // Embree's rays go in the order of the points: they are for comparison.
 CoherentOrder::Keys CoherentOrder::keys_along_curves(const ScaledMesh& mesh, std::span<const Vec3> points) {
-  const bool far = mesh.has_far_field();
+  const ProjectedGrid* const grid = mesh.has_far_field() ? nullptr : mesh.grid_if_built();
   constexpr unsigned kBits = 7;  // of each axis
-  Keys keys{far ? 1U << (3 * kBits) : std::uint32_t{ProjectedGrid::kMortonCodes}, {}, true, {}};
+  Keys keys{!grid ? 1U << (3 * kBits) : std::uint32_t{ProjectedGrid::kMortonCodes}, {}, true, {}};
   keys.of_points.resize(points.size());
   std::atomic<bool> all_taken = true;
-  const SpaceCurve curve(far ? bounding_box(mesh.mesh()) : empty_box(), kBits);
+  const SpaceCurve curve(!grid ? bounding_box(mesh.mesh()) : empty_box(), kBits);
   const auto key_of = [&](const Vec3& q) -> std::uint32_t {
-    return far ? static_cast<std::uint32_t>(curve.place(q)) : mesh.grid().morton_code(q);
+    return grid ? grid->morton_code(q) : static_cast<std::uint32_t>(curve.place(q));
   };
   constexpr std::size_t kPointsPerTask = 4096;
   parallel_for(points.size(), kPointsPerTask, [&](std::size_t begin, std::size_t end) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/crossings/few_rays.h"
+
 namespace raycone {
 
 Tally PointTile::evaluate(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
@@ -21,10 +23,15 @@ Tally PointTile::evaluate(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
 void PointTile::find_crossings(const ScaledMesh& mesh) {
   std::fill_n(degenerate_.begin(), count_, Degenerate{});
   doubtful_.clear();
-  if (mesh.options().ray_engine == RayEngine::kScan) {
-    mesh.grid().crossings({queries_.data(), count_}, {n_.data(), count_}, doubtful_);
+  const std::span<const Vec3> queries(queries_.data(), count_);
+  if (mesh.options().ray_engine == RayEngine::kEmbree) {
+    take_candidates_of_embree(mesh);
+  } else if (const ProjectedGrid* const grid = mesh.grid_if_built()) {
+    grid->crossings(queries, {n_.data(), count_}, doubtful_);
   } else {
-    find_candidates(mesh);
+    static_assert(kTile <= kFewRays);
+    std::fill_n(n_.begin(), count_, 0);
+    find_candidates(mesh.mesh(), queries, doubtful_);
   }
   for (const auto& [i, triangle] : doubtful_) {
     const Vec3& q = queries_[i];
@@ -35,8 +42,8 @@ void PointTile::find_crossings(const ScaledMesh& mesh) {
   }
 }
 
-// Embree's, none of which is certain.
-void PointTile::find_candidates(const ScaledMesh& mesh) {
+// None of which is certain.
+void PointTile::take_candidates_of_embree(const ScaledMesh& mesh) {
   for (std::uint32_t i = 0; i < count_; ++i) {
     n_[i] = 0;
     mesh.rays().find_candidates(queries_[i], candidates_);

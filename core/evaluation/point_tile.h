@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/boundary/sample_tile.h"
-#include "core/crossings/projected_grid.h"
+#include "core/crossings/crossings.h"
 #include "core/data/diagnostics.h"
 #include "core/evaluation/scaled_mesh.h"
 
@@ -40,7 +40,7 @@ class PointTile {
   };
 
   void find_crossings(const ScaledMesh& mesh);
-  void find_candidates(const ScaledMesh& mesh);
+  void take_candidates_of_embree(const ScaledMesh& mesh);
   void set_values(const ScaledMesh& mesh, PointBlocks::Sums* sums);
   void set_diagnostics(const ScaledMesh& mesh);
 
@@ -55,7 +55,7 @@ class PointTile {
   std::array<double, kTile> w_;
   SampleTile samples_;
   std::vector<std::uint32_t> candidates_;
-  std::vector<ProjectedGrid::Doubtful> doubtful_;
+  std::vector<RayCandidate> doubtful_;
 };
 
 }  // namespace raycone

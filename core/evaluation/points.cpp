@@ -14,7 +14,7 @@
 namespace raycone {
 namespace {
 
-// ---- Closed meshes ---------------------------------------------------------------------------------------------
+// ---- Closed meshes that have a grid ----------------------------------------------------------------------------
 
 void set_to_zero(std::size_t begin, std::size_t end, std::span<double> values, const Diagnostics* diagnostics) {
   const std::size_t count = end - begin;
@@ -60,8 +60,6 @@ std::size_t points_of_a_part(std::size_t points) {
 Tally evaluate_closed(const ScaledMeshes& meshes, std::span<const Vec3> points, const ValueOutputs& out,
                       ScaledMesh::Settling settling) {
   const ScaledMesh& scaled = meshes.scaled();
-  // What the points need is built before the loops over them, within which threads would wait for one another.
-  scaled.prepare_points();
   const std::size_t size = points_of_a_part(points.size());
   std::vector<std::vector<std::uint32_t>> others((points.size() + size - 1) / size);
   SharedTally tally;
@@ -76,10 +74,11 @@ Tally evaluate_closed(const ScaledMeshes& meshes, std::span<const Vec3> points, 
       out.count_done(end - begin - others[part].size());
     }
   });
-  const bool all_taken = std::ranges::all_of(others, [](const auto& part) { return part.empty(); });
-  if (all_taken) return tally.total();
+  std::uint64_t left = 0;
+  for (const auto& part : others) left += part.size();
+  if (left == 0) return tally.total();
   const ScaledMesh& unscaled = meshes.unscaled();
-  unscaled.prepare_points();
+  unscaled.prepare_points(left);
   parallel_for(others.size(), 1, [&](std::size_t first, std::size_t last) {
     PointTile tile(out.values, out.diagnostics, settling);
     for (std::size_t part = first; part < last; ++part) {
@@ -151,10 +150,8 @@ std::size_t buckets_of_a_part(std::size_t points) {
 Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, const ValueOutputs& out,
                      ScaledMesh::Settling settling) {
   const ScaledMesh& scaled = meshes.scaled();
-  // What the points need is built before the loops over them, within which threads would wait for one another.
-  scaled.prepare_points();
   const CoherentOrder order(scaled, points);
-  if (!order.all_taken()) meshes.unscaled().prepare_points();
+  if (!order.all_taken()) meshes.unscaled().prepare_points(points.size());
   const BlocksOfPoints* const blocks = scaled.blocks_of_points();
   if (blocks) blocks->sums.prepare(order.groups());
   const BatchEvaluation batch(meshes, order);
@@ -179,7 +176,9 @@ Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, 
                       ScaledMesh::Settling settling) {
   Tally total;
   const ScaledMesh& scaled = meshes.scaled();
-  const bool closed = scaled.is_closed() && scaled.options().ray_engine == RayEngine::kScan;
+  // What the points need is built before the loops over them, within which threads would wait for one another.
+  scaled.prepare_points(points.size());
+  const bool closed = scaled.is_closed() && scaled.grid_if_built() != nullptr;
   constexpr std::size_t kIndexable = std::size_t{1} << 31;
   const std::size_t batch = closed ? kIndexable : CoherentOrder::batch(scaled);
   for (std::size_t begin = 0; begin < points.size(); begin += batch) {

@@ -141,13 +141,23 @@ const FarField* ScaledMesh::far_field_for(std::size_t samples) const {
   return far_field_without_waiting();
 }
 
-void ScaledMesh::prepare_points() const {
+// Without it each tile of points takes a pass over the triangles (few_rays.h). Nobody knows how many points will come:
+// it is built once these passes have taken about as long as building it does, so that a few points never wait for it,
+// and many wait at most twice as long.
+bool ScaledMesh::grid_pays(std::uint64_t points) const {
+  constexpr std::uint64_t kPasses = kFewPoints / kTile;
+  if (grid_.if_built() || points > kFewPoints) return true;
+  const std::uint64_t passes = (points + kTile - 1) / kTile;
+  return passes_.fetch_add(passes, std::memory_order_relaxed) + passes > kPasses;
+}
+
+void ScaledMesh::prepare_points(std::uint64_t points) const {
   if (!options_.accuracy.sides_only) (void)has_far_field();
   (void)blocks_of_points();
-  if (options_.ray_engine == RayEngine::kScan) {
-    (void)grid();
-  } else {
+  if (options_.ray_engine == RayEngine::kEmbree) {
     (void)rays();
+  } else if (grid_pays(points)) {
+    (void)grid();
   }
 }
 

@@ -73,6 +73,7 @@ class ScaledMesh {
   // Built when first needed: lattices may need none of them.
   [[nodiscard]] const RayCaster& rays() const;
   [[nodiscard]] const ProjectedGrid& grid() const;
+  [[nodiscard]] const ProjectedGrid* grid_if_built() const { return grid_.if_built(); }
   [[nodiscard]] const SlabOrder& slab_order(int axis) const;  // 1 or 2
   // The caps of an open mesh; none where values depend on no crossings.
   [[nodiscard]] const Caps& caps() const;
@@ -83,7 +84,8 @@ class ScaledMesh {
   [[nodiscard]] const Blocks& blocks() const;
   // None where there are too few points for it. Only before loops over points.
   [[nodiscard]] const BlocksOfPoints* blocks_of_points() const;
-  void prepare_points() const;
+  // Builds what points need; of the grid of rays, what so many more points need. Only before loops over points.
+  void prepare_points(std::uint64_t points) const;
 
   // What follows takes queries in the scale.
 
@@ -144,6 +146,8 @@ class ScaledMesh {
   // None where another thread is making it.
   [[nodiscard]] const FarField* far_field_without_waiting() const;
   [[nodiscard]] std::unique_ptr<const BlocksOfPoints> make_blocks_of_points() const;
+  // Whether the grid of rays pays, for so many more points.
+  [[nodiscard]] bool grid_pays(std::uint64_t points) const;
   void set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
                                     std::span<double> values, double doubt) const;
 
@@ -158,7 +162,7 @@ class ScaledMesh {
   Boundary boundary_;
   std::unique_ptr<const WindingNumberEngine> direct_;  // none where the mesh is closed
   SummationChoice choice_;                             // refers to boundary_
-  mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
+  mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0, passes_ = 0;
   mutable std::atomic_flag far_is_taken_;
   BuiltOnce<RayCaster> rays_;
   BuiltOnce<ProjectedGrid> grid_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cstdint>
+#include <limits>
 #include <utility>
 
 #include "core/crossings/check_counts.h"
@@ -98,7 +100,7 @@ void WindingNumberEvaluator::settle(std::span<const Vec3> points, double critica
 void WindingNumberEvaluator::prepare_points() const {
   const DefaultFloatingPoint guard;
   const ScaledMesh& scaled = implementation_->scaled();
-  if (!scaled.mesh().triangles.empty()) scaled.prepare_points();
+  if (!scaled.mesh().triangles.empty()) scaled.prepare_points(std::numeric_limits<std::uint64_t>::max());
 }
 
 Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,

@@ -55,6 +55,7 @@ struct ExteriorEdge;
 inline constexpr double kLeastTolerance = 1e-12;          // turns; less counts as 0
 inline constexpr double kAgreeingRounding = 1.6e-14;      // turns per edge: see error_of_agreeing_roundings()
 inline constexpr double kLeastToleranceOfBlocks = 1e-11;  // below, fits would round too much
+inline constexpr std::uint64_t kFewPoints = 4096;         // searching all triangles for them takes as long as a grid
 
 // How well values are to be known.
 struct Accuracy {
@@ -135,8 +136,8 @@ class WindingNumberEvaluator {
   // hundred times sooner where most of them are so near, as in a search for the places where w is one.
   void evaluate_unsettled(std::span<const Vec3> points, std::span<double> values) const;
 
-  // Builds the search structure that points need and lattices may not. Without this call, the first evaluation of
-  // points builds it.
+  // Builds the search structure that many points need and lattices may not. Without this call, the evaluation builds it
+  // with which more than kFewPoints have come, or fewer in small portions.
   void prepare_points() const;
 
   // Sets for each sample of a block of `lattice` only whether `rule` holds, 1, or not, 0: exactly. In a small part of

@@ -11,7 +11,7 @@ std::array<std::int64_t, kTile> CapCrossings::of(const SampleTile& samples) cons
   if (!grid_) return n;
   std::array<Vec3, kTile> queries;
   for (std::size_t i = 0; i < samples.count; ++i) queries[i] = samples.query(i);
-  std::vector<ProjectedGrid::Doubtful> doubtful;
+  std::vector<RayCandidate> doubtful;
   grid_->crossings({queries.data(), samples.count}, {n.data(), samples.count}, doubtful);
   for (const auto& [i, triangle] : doubtful) {
     const Triangle& t = caps_->triangles[triangle];

@@ -3,14 +3,17 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/crossings/crossings.h"
+#include "core/crossings/few_rays.h"
 #include "core/machine/floating_point.h"
 #include "tests/support/shapes.h"
 
@@ -22,6 +25,10 @@ struct Found {
   int ties = 0;
   bool on_surface = false;
   std::size_t decided = 0;  // triangles that exact predicates were asked about
+
+  [[nodiscard]] bool same_as(const Found& other) const {
+    return n == other.n && ties == other.ties && on_surface == other.on_surface;
+  }
 
   void add(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& q) {
     const Triangle& t = mesh.triangles[triangle];
@@ -47,7 +54,7 @@ struct Totals {
 // What the grid finds, all queries at once.
 std::vector<Found> by_grid(const ProjectedGrid& grid, const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
   std::vector<std::int64_t> n(queries.size(), 99);
-  std::vector<ProjectedGrid::Doubtful> doubtful;
+  std::vector<RayCandidate> doubtful;
   grid.crossings(queries, n, doubtful);
   std::vector<Found> found(queries.size());
   for (std::size_t i = 0; i < queries.size(); ++i) found[i].n = static_cast<int>(n[i]);
@@ -55,17 +62,30 @@ std::vector<Found> by_grid(const ProjectedGrid& grid, const TriangleMesh& mesh, 
   return found;
 }
 
+// What passes over the triangles find.
+std::vector<Found> by_passes(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
+  std::vector<Found> found(queries.size());
+  std::vector<RayCandidate> candidates;
+  for (std::size_t first = 0; first < queries.size(); first += kFewRays) {
+    candidates.clear();
+    find_candidates(mesh, std::span(queries).subspan(first, std::min(kFewRays, queries.size() - first)), candidates);
+    for (const auto& [i, triangle] : candidates) found[first + i].add(mesh, triangle, queries[first + i]);
+  }
+  return found;
+}
+
 Totals check(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
   const DefaultFloatingPoint guard;
   const ProjectedGrid grid(mesh);
-  const std::vector<Found> all_found = by_grid(grid, mesh, queries);
+  const std::vector<Found> all_found = by_grid(grid, mesh, queries), found_by_passes = by_passes(mesh, queries);
   std::vector<ProjectedGrid::Place> places(queries.size());
   grid.find_places(queries, places);
   Totals totals;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const Vec3& q = queries[i];
     const Found &found = all_found[i], expected = by_all_triangles(mesh, q);
-    const bool same = found.n == expected.n && found.ties == expected.ties && found.on_surface == expected.on_surface;
+    EXPECT_TRUE(found_by_passes[i].same_as(expected)) << "passes at " << q.x << ' ' << q.y << ' ' << q.z;
+    const bool same = found.same_as(expected);
     EXPECT_TRUE(same) << found.n << " for " << expected.n << ", ties " << found.ties << " for " << expected.ties
                       << " at " << q.x << ' ' << q.y << ' ' << q.z;
     if (!same) return totals;
@@ -179,6 +199,33 @@ TEST(ProjectedGrid, LeavesFewDecisionsToPredicates) {
   const Totals totals = check(mesh, queries);
   EXPECT_GT(totals.crossed, 800U);
   EXPECT_LT(totals.decided, queries.size() / 50);
+}
+
+// Some share a coordinate, some are as far apart as numbers go.
+TEST(FewRays, FindWhatAllTrianglesSayHoweverTheyLie) {
+  constexpr double l = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
+  test::Random random(7);
+  const TriangleMesh mesh = test::random_cells(random, 4);
+  const auto crossed = [&](const std::vector<Vec3>& queries) {
+    const std::vector<Found> found = by_passes(mesh, queries);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      EXPECT_TRUE(found[i].same_as(by_all_triangles(mesh, queries[i]))) << i;
+      count += found[i].n != 0 ? 1 : 0;
+    }
+    return count;
+  };
+  for (const double far : {0.0, least, 1e-320, 1e-310, 1e-17, 1.0, 1e17, 1e300, l}) {
+    std::vector<Vec3> queries;
+    for (int i = 0; i < 60; ++i) {
+      const Vec3 q = test::uniform_point(random, {{-1, 0, 0}, {4, 4, 4}});
+      queries.push_back({q.x, i % 2 == 0 ? q.y : far, i % 3 == 0 ? 0.5 : q.z});
+    }
+    queries.insert(queries.end(), {{-far, far, -far}, {far, -far, far}, {-l, 0.5, 0.5}, {far, 0.5, 0.5}});
+    EXPECT_GT(crossed(queries), 5U) << far;
+    crossed(std::vector<Vec3>(kFewRays, queries.front()));
+    crossed({queries.back()});
+  }
 }
 
 // Next to a cell whose triangles reach far are others whose triangles do not: rays that start just before one of them.

@@ -78,6 +78,8 @@ MUTANTS = [
          "static_cast<float>(largest(a.x, b.x, c.x) - 0x1p-30)")]),
     Mutant("grid_misses_rays", "rays that meet nothing are told by all cells that they may be in", [
         ("core/crossings/projected_grid_builder.cpp", "at(((square + 1) << coarser) + kMargin)", "at(square << coarser)")]),
+    Mutant("passes_miss_rays", "a pass finds rays in the last bin that a triangle reaches, too", [
+        ("core/crossings/few_rays.cpp", "below_[bin(upper) + 1] & ~", "below_[bin(upper)] & ~")]),
     Mutant("sections_without_lines", "a long triangle concerns the rows on the lines of its edges, too", [
         ("core/crossings/triangle_sections.h", "  std::sort(parts.begin(),", "  parts[0] = parts[1] = parts[2] = nothing;\n  std::sort(parts.begin(),")]),
     Mutant("sections_without_error", "where a line is, is known up to rounding", [

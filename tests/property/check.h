@@ -35,7 +35,7 @@ struct Answer {
 // The same query in each of the ways there are.
 struct Answers {
   Vec3 query;
-  Answer scan, embree, over_triangles;
+  Answer grid, passes, embree, over_triangles;
   bool closed = false;  // the mesh, for the evaluator
 };
 
@@ -47,7 +47,8 @@ struct Answers {
 // For each query: the value is the direct sum in 113 to 3000 bits within the value's own error bound (on the surface:
 // the sum at the query moved as the symbolic perturbation has it), and that bound is below 1e-12; the value is an
 // integer with bound 0 if the mesh is closed; on_surface and degenerate are what their definitions give, in integer
-// arithmetic. Embree says the same to the bit, the sum over triangles within both bounds. Nothing where all holds.
+// arithmetic. Passes over the triangles and Embree say the same to the bit, the sum over triangles within both bounds.
+// Nothing where all holds.
 [[nodiscard]] std::optional<Failure> check(const TriangleMesh& welded, const std::vector<Vec3>& queries,
                                            CheckCounts* counts = nullptr);
 

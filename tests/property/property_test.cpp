@@ -105,7 +105,7 @@ class PropertyCheck : public testing::Test {
   }
   static Damage in_all(const std::function<void(Answer&)>& damage) {
     return [damage](Answers& answers) {
-      for (Answer* one : {&answers.scan, &answers.embree, &answers.over_triangles}) damage(*one);
+      for (Answer* one : {&answers.grid, &answers.passes, &answers.embree, &answers.over_triangles}) damage(*one);
     };
   }
 };
@@ -117,12 +117,13 @@ TEST_F(PropertyCheck, NoticesWrongValuesOnWhichAllAgree) {
   EXPECT_EQ(unnoticed(in_all([](Answer& a) { a.value += 1e-11; })), 0U);
   EXPECT_EQ(unnoticed(in_all([](Answer& a) { a.value += 1; })), 0U);
   EXPECT_EQ(unnoticed(in_all([](Answer& a) { a.value = kNan; })), 0U);
-  const auto on_surface = [](const Answers& a) { return a.scan.on_surface; };
+  const auto on_surface = [](const Answers& a) { return a.grid.on_surface; };
   EXPECT_EQ(unnoticed(in_all([](Answer& a) { a.value -= 1; }), on_surface), 0U);
 }
 
 TEST_F(PropertyCheck, NoticesOneWayThatDiffersFromTheOthers) {
   EXPECT_EQ(unnoticed([](Answers& a) { a.embree.value = std::nextafter(a.embree.value, 9.0); }), 0U);
+  EXPECT_EQ(unnoticed([](Answers& a) { a.passes.degenerate++; }), 0U);
   EXPECT_EQ(unnoticed([](Answers& a) { a.embree.on_surface = !a.embree.on_surface; }), 0U);
   EXPECT_EQ(unnoticed([](Answers& a) { a.over_triangles.value += 1e-11; }), 0U);
   EXPECT_EQ(unnoticed([](Answers& a) { a.over_triangles.value = kNan; }), 0U);

@@ -18,18 +18,21 @@ namespace raycone {
 namespace {
 
 // What is inside must be something that a surface can go around.
-void check_inside(const std::string& name, const NodeSet& inside, const SurfaceOptions& options) {
+void check_inside(const ChosenInput& input, const NodeSet& inside, const SurfaceOptions& options) {
   const std::string rule = name_of(options.rule);
+  const bool may_turn = input.orient != Orient::kAuto;
   if (inside.empty()) {
     const bool thickens = options.thickness > 0.0;
-    throw InputError(name + ": no sample is inside by the rule " + rule + (thickens ? ", or within --thicken" : "") +
-                     ": reversed faces (--orient auto), or parts thinner than a voxel (--resolution N, " +
-                     (thickens ? "a larger --thicken" : "raycone surface --thicken T") + ")?");
+    throw InputError(
+        input.name + ": no sample is inside by the rule " + rule + (thickens ? ", or within --thicken: " : ": ") +
+        (may_turn ? "reversed faces (--orient auto), or " : "") + "parts thinner than a voxel (--resolution N, " +
+        (thickens ? "a larger --thicken" : "raycone surface --thicken T") + ")?");
   }
   if (inside.reaches_border()) {
-    throw InputError(name + ": what is inside by the rule " + rule +
-                     " reaches the border of the lattice, expected a larger box (--padding P), faces that agree "
-                     "(--orient auto), or another rule");
+    throw InputError(input.name + ": what is inside by the rule " + rule +
+                     " reaches the border of the lattice, expected a larger " +
+                     (input.grid ? "grid" : "box (--padding P)") +
+                     (may_turn ? ", faces that agree (--orient auto), or another rule" : ", or another rule"));
   }
 }
 
@@ -113,9 +116,10 @@ struct PointEvaluators {
 
 }  // namespace
 
-MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges,
+MadeSurface make_surface(const ChosenInput& input, const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges,
                          const Lattice& lattice, const SurfaceOptions& options, std::uint64_t memory,
                          std::atomic<std::uint64_t>* done) {
+  const std::string& name = input.name;
   check_memory(name, node_set_bytes(lattice), memory);
   const Accuracy for_sides{.tolerance = tolerance_for_sides(options.rule),
                            .samples = static_cast<double>(whole(lattice).size()),
@@ -125,7 +129,7 @@ MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh, cons
   NodeSet inside = nodes_inside(*evaluator, options.rule, lattice, done, &tally);
   Terms terms = evaluator->terms();
   if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
-  check_inside(name, inside, options);
+  check_inside(input, inside, options);
   std::optional<PointEvaluators> at_points;
   if (!edges.empty()) {  // values of closed meshes are exact anyway
     evaluator.reset();   // what it held is free for those that follow

@@ -12,6 +12,7 @@
 #include "core/data/warning.h"
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/exterior_edges.h"
+#include "core/orientation/orient.h"
 #include "core/surface/surface.h"
 
 namespace raycone {
@@ -24,11 +25,18 @@ struct MadeSurface {
   Terms terms;                    // that were summed for them and for the surface
 };
 
+// What the user has chosen, so that errors advise something else.
+struct ChosenInput {
+  std::string name;  // of the mesh's file
+  Orient orient = Orient::kKeep;
+  bool grid = false;  // the lattice is that of --like
+};
+
 // The surface between the inside and the outside nodes of `lattice`, by winding numbers of `mesh`; it has been checked.
-// `name`: the file concerned. `edges`: the exterior edges of `mesh`. `done`, where given, grows by one per node. Throws
+// `edges`: the exterior edges of `mesh`. `done`, where given, grows by one per node. Throws
 // InputError (nothing is inside, or the inside reaches the lattice's border), LimitError (`memory`, bytes, does not do
 // for the nodes or, as soon as these are known, for the surface; or numbers do not do for it), SurfaceFailure.
-[[nodiscard]] MadeSurface make_surface(const std::string& name, const TriangleMesh& mesh,
+[[nodiscard]] MadeSurface make_surface(const ChosenInput& input, const TriangleMesh& mesh,
                                        const std::vector<ExteriorEdge>& edges, const Lattice& lattice,
                                        const SurfaceOptions& options, std::uint64_t memory,
                                        std::atomic<std::uint64_t>* done = nullptr);

@@ -25,7 +25,8 @@ struct VerifiedRun {
 
 // The same as verify_by_definition() of a run of `meshes`; throws VerificationError also if the evaluator answers
 // differently now, as at points, or if a winding number is off by more than its error bound. Samples without a winding
-// number are verified with what the evaluator answers now.
+// number are verified with what the evaluator answers now. Where only a rule was asked for, the difference and the
+// bound of winding numbers are 0.
 [[nodiscard]] Verification verify(const std::string& name, const VerifiedMeshes& meshes, const VerifiedRun& run,
                                   std::span<const DrawnSample> samples);
 

@@ -107,16 +107,17 @@ std::optional<Warning> tolerance_not_kept(double tolerance, double bound) {
   return Warning{"tolerance", text};
 }
 
-Warning nothing_inside(const Rule& rule, const Box& box, const PlacedLattice& lattice) {
+Warning nothing_inside(const Rule& rule, Orient orient, const Box& box, const PlacedLattice& lattice) {
   constexpr double kFew = 4.0;  // so few voxels along a mesh are hardly meant
   const std::string nothing = "no sample is inside by the rule " + name_of(rule);
+  const char* const by_turning = orient == Orient::kAuto ? "" : ", --orient auto where faces are reversed";
   const double length = longest_side(box), spacing = lattice.grid.least_spacing();
   if (length < kFew * spacing) {
     return {"empty", nothing + ": the mesh is " + with_digits(length, 3) + " long, and samples are " +
-                         with_digits(spacing, 3) + " apart; --scale helps where units differ, a finer lattice, or " +
-                         "--orient auto where faces are reversed"};
+                         with_digits(spacing, 3) + " apart; a finer lattice helps, --scale where units differ" +
+                         by_turning};
   }
-  return {"empty", nothing + "; --orient auto helps where faces are reversed, a finer lattice where the mesh is thin"};
+  return {"empty", nothing + "; a finer lattice helps where the mesh is thin" + by_turning};
 }
 
 }  // namespace raycone

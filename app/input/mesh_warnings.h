@@ -35,7 +35,7 @@ namespace raycone {
 // no promise.
 [[nodiscard]] std::optional<Warning> tolerance_not_kept(double tolerance, double bound);
 
-// `empty`, of a mesh in `box`.
-[[nodiscard]] Warning nothing_inside(const Rule& rule, const Box& box, const PlacedLattice& lattice);
+// `empty`, of a mesh in `box` that was turned so.
+[[nodiscard]] Warning nothing_inside(const Rule& rule, Orient orient, const Box& box, const PlacedLattice& lattice);
 
 }  // namespace raycone

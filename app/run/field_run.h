@@ -72,11 +72,13 @@ class FieldRun {
   double largest_bound_ = 0.0;  // of diagnostics
 };
 
-// Refuses meshes that points cannot be evaluated of within `limits`, before any work on them. Throws LimitError.
-void check_points_memory(const MeshOptions& options, std::uint64_t triangles, const FieldOptions& field,
-                         const RunLimits& limits);
+// Bytes that search structures of so many triangles take at least: for winding numbers of many points, and for signed
+// distances where they are wanted.
+[[nodiscard]] double memory_of_many_points(std::uint64_t triangles, const FieldOptions& field);
+[[nodiscard]] double memory_of_distances(std::uint64_t triangles, const FieldOptions& field);
 
-// The same of evaluators of so many parts, as labels of points have them.
+// Refuses what does not fit within `limits`, before any work on it: evaluators of so many parts, as labels of points
+// have them. Throws LimitError.
 void check_parts_memory(const MeshOptions& options, std::size_t parts, const RunLimits& limits);
 
 // The same of what verification keeps of a run of `samples`, as far as they are known.

@@ -94,8 +94,8 @@ void LabelledParts::spent(const FieldEvaluator& evaluator) { terms_ += evaluator
 void LabelledParts::warn_of_empty_parts() {
   const std::string parts = empty_.size() == 1 ? "1 part has" : std::to_string(empty_.size()) + " parts have";
   const std::string text = parts + " no sample inside by the rule " + name_of(field_.rule) + " (" +
-                           listed_names(empty_, parts_) +
-                           "); --orient auto helps where faces are reversed, a finer lattice where parts are thin";
+                           listed_names(empty_, parts_) + "); a finer lattice helps where parts are thin" +
+                           (mesh_.orient == Orient::kAuto ? "" : ", --orient auto where faces are reversed");
   run_.warn_about(parts_.files()[parts_.file_of(empty_.front())].read.path, {{"empty", text}});
 }
 

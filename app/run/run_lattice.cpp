@@ -84,8 +84,9 @@ TriangleMesh solid_of(const LatticeCommand& command, MeshRun& run, const Triangl
     const Lattice lattice = solid_lattice(command, *run.report.lattice);
     SurfaceOptions options{command.field.rule};
     options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
-    MadeSurface made = make_surface(run.report.mesh, mesh, exterior_edges(mesh), lattice, options,
-                                    run.limits().memory(), run.start_progress(sample_count(lattice)));
+    const bool grid = std::holds_alternative<GridReference>(command.lattice);
+    MadeSurface made = make_surface({run.report.mesh, command.mesh.orient, grid}, mesh, exterior_edges(mesh), lattice,
+                                    options, run.limits().memory(), run.start_progress(sample_count(lattice)));
     run.report.surface = made.report;
     // How its faces are merged does not concern distances.
     for (const Warning& warning : made.warnings) {
@@ -120,7 +121,9 @@ struct LatticeWork {
 void prepare(LatticeCommand& command, LoadedMesh& loaded, MeshRun& run, LatticeWork& work) {
   const PlacedLattice& lattice = *run.report.lattice;
   const bool as_points = !world_order(lattice).has_value();
-  if (as_points) check_points_memory(command.mesh, run.report.faces, command.field, run.limits());
+  const double of_points = as_points ? memory_of_many_points(run.report.faces, command.field) : 0.0;
+  check_memory(command.mesh.path, of_points + memory_of_distances(run.report.faces, command.field),
+               run.limits().memory());
   check_verify_memory(command.mesh, command.field, static_cast<double>(run.report.samples), run.limits());
   if (loaded.parts) {
     check_memory(run.report.mesh, LabelVolume::bytes(lattice.grid, loaded.parts->size()), run.limits().memory());
@@ -169,7 +172,7 @@ RunReport run_lattice(const LatticeCommand& asked, const RunLimits& limits, cons
   evaluate_lattice(command, work, observe, run);
   const bool may_be_empty = !should_have_inside(loaded.box, *report.lattice);
   if (work.fields->found_nothing_inside() && !may_be_empty) {
-    run.warn(nothing_inside(command.field.rule, loaded.box, *report.lattice));
+    run.warn(nothing_inside(command.field.rule, command.mesh.orient, loaded.box, *report.lattice));
   }
   work.fields->finish(command.field.band * report.lattice->grid.spacing.x);
   timed(report.seconds.write, [&] {

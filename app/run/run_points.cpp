@@ -8,6 +8,7 @@
 #include <memory>
 #include <new>
 #include <optional>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -15,6 +16,7 @@
 
 #include "app/input/run_limits.h"
 #include "app/input/written_files.h"
+#include "app/process/memory_limit.h"
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
 #include "app/run/field_run.h"
@@ -123,7 +125,9 @@ std::unique_ptr<PointWriter> open_writer(const PointsCommand& command, const Poi
 void prepare(const PointsCommand& command, TriangleMesh mesh, LabelledParts* parts, MeshRun& run, PointWork& work) {
   const double points = expected_points(*work.reader, command.sample ? "-" : command.points);
   const bool may_be_many = points >= static_cast<double>(kFewPoints);
-  if (may_be_many) check_points_memory(command.mesh, run.report.faces, command.field, run.limits());
+  const double of_grid = may_be_many ? memory_of_many_points(run.report.faces, command.field) : 0.0;
+  check_memory(command.mesh.path, of_grid + memory_of_distances(run.report.faces, command.field),
+               run.limits().memory());
   const auto known = static_cast<double>(work.reader->size().value_or(0));
   check_verify_memory(command.mesh, command.field, known, run.limits());
   if (parts) check_parts_memory(command.mesh, parts->size(), run.limits());
@@ -137,6 +141,15 @@ void prepare(const PointsCommand& command, TriangleMesh mesh, LabelledParts* par
   }
   work.fields.emplace(run, std::move(mesh), work.field, points, known);
   work.fields->prepare_points();
+}
+
+// The faces by their places among those of the file.
+std::vector<std::int64_t> in_file(std::span<const std::int64_t> faces, const MeshRun& run) {
+  std::vector<std::int64_t> places(faces.begin(), faces.end());
+  for (std::int64_t& face : places) {
+    if (face >= 0) face = run.place_of(static_cast<std::uint32_t>(face));
+  }
+  return places;
 }
 
 // Answers are handed on whenever the next question would have to be waited for.
@@ -166,7 +179,7 @@ void evaluate_points(const PointsCommand& command, PointWork& work, MeshRun& run
     const SurfacePlaces places = reader.places();
     timed(seconds.write, [&] {
       work.writer->write(points, fields.values());
-      if (!places.faces.empty()) work.writer->write_places(places.normals, places.faces);
+      if (!places.faces.empty()) work.writer->write_places(places.normals, in_file(places.faces, run));
     });
     run.report.samples += points.size();
   }

@@ -57,7 +57,10 @@ double evaluation_memory(const Slice& slice, const FieldOptions& field, const Ru
 // Refuses pictures that cannot fit, before any work on them. Samples are gone when the picture is made.
 void check_slice_memory(const Slice& slice, const SliceCommand& command, const RunReport& report,
                         const RunLimits& limits) {
-  if (!is_on_lattice(slice, command.field)) check_points_memory(command.mesh, report.faces, command.field, limits);
+  if (!is_on_lattice(slice, command.field)) {
+    const double of_points = memory_of_many_points(report.faces, command.field);
+    check_memory(command.mesh.path, of_points + memory_of_distances(report.faces, command.field), limits.memory());
+  }
   if (!slice.lattice) check_parts_memory(command.mesh, report.parts.size(), limits);
   const double values = static_cast<double>(report.samples) * sizeof(double);
   const double picture = slice_picture_bytes(slice.view, command.framed);

@@ -60,7 +60,8 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
   options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
   MadeSurface made = timed(report.seconds.evaluate, [&] {
-    return make_surface(report.mesh, mesh, edges, lattice, options, limits.memory(), done);
+    return make_surface({report.mesh, command.mesh.orient, grid != nullptr}, mesh, edges, lattice, options,
+                        limits.memory(), done);
   });
   report.surface = made.report;
   report.tally = made.tally;

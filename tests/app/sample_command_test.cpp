@@ -54,6 +54,25 @@ TEST_F(SampleOption, WritesWhatNetworksAreTrainedOn) {
       "");
 }
 
+// A square, a face that --orient auto removes since the square has it turned over, and another square beside it.
+TEST_F(SampleOption, FacesAreThoseOfTheFile) {
+  if (!python_has("numpy")) GTEST_SKIP() << "no numpy in /usr/bin/python3";
+  std::ofstream(mesh_) << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 1 0\n"
+                          "f 1 2 3\nf 3 2 1\nf 1 3 4\nf 2 5 3\nf 5 6 3\n";
+  const auto run = run_raycone({"points", mesh_, "--sample", "surface=200", "--orient", "auto", "--quiet", "-o",
+                                dir_ / "out.npz", "--field", "winding"});
+  ASSERT_EQ(run.status, 0) << run.err;
+  EXPECT_EQ(run_python("import numpy, sys\n"
+                       "z = numpy.load(sys.argv[1])\n"
+                       "x, y, face = z['points'][:, 0], z['points'][:, 1], z['faces']\n"
+                       "expected = numpy.where(x > 1, numpy.where(y < 2 - x, 3, 4), numpy.where(y > x, 2, 0))\n"
+                       "face = numpy.where(face == 1, 0, face)  # of two that cancel, either may be kept\n"
+                       "assert set(face) == {0, 2, 3, 4}, set(face)\n"
+                       "assert (face == expected).all(), (z['points'], face)\n",
+                       {dir_ / "out.npz"}),
+            "");
+}
+
 TEST_F(SampleOption, SameSeedSameBytes) {
   const std::string bytes = npz({});
   EXPECT_EQ(npz({"--threads", "1"}), bytes);

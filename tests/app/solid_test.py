@@ -122,8 +122,9 @@ class Solid(CommandCase):
     def test_what_has_no_surface_is_refused(self):
         for mesh, options, status, reason in (
                 (SOUP, "--resolution 5", 2, "no sample is inside by the rule threshold=0.5"),
-                (CUBE, "--resolution 5 --orient flip", 2, "no sample is inside"),
-                (CUBE, "--resolution 5 --rule threshold=-.5", 2, "reaches the border of the lattice"),
+                (CUBE, "--resolution 5 --orient flip", 2, "no sample is inside by the rule threshold=0.5: reversed faces (--orient auto), or"),
+                (CUBE, "--resolution 5 --rule threshold=-.5", 2, "a larger box (--padding P), faces that agree (--orient auto)"),
+                (CUBE, "--resolution 5 --rule threshold=-.5 --orient auto", 2, "a larger box (--padding P), or another"),
                 (CUBE, "--resolution 9 --bounds 0,0,0,1,1,.5", 2, "reaches the border of the lattice"),
                 (CUBE, "--resolution 5,6,7", 1, "--field solid: voxels of 0.25 x 0.2 x 0.166666667, expected cubic ones"),
                 (CUBE, "--resolution 9 --memory-limit 1", 4, "memory")):

@@ -370,7 +370,10 @@ TEST(Verify, KnowsHowRoughWindingNumbersOfRulesAre) {
   EXPECT_GT(evaluator.winding_number().terms().far, 0U);
   SampleDraw draw(points.size());
   draw.offer(points, samples.numbers());
-  EXPECT_EQ(verify("m", {mesh}, {evaluator, options, kInfinity}, draw.samples()).samples, points.size());
+  const Verification found = verify("m", {mesh}, {evaluator, options, kInfinity}, draw.samples());
+  EXPECT_EQ(found.samples, points.size());
+  EXPECT_EQ(found.largest_difference, 0.0);
+  EXPECT_EQ(found.largest_bound, 0.0);
 }
 
 TEST(Verify, WrongValuesAreInternalErrorsInOneLine) {

@@ -28,7 +28,7 @@ struct Truth {
 };
 
 // floor(w + 1/2)
-Quad nearest_integer(Quad w) {
+Quad rounded_half_up(Quad w) {
   const auto nearest = static_cast<Quad>(static_cast<std::int64_t>(w));  // towards zero
   const Quad rest = w - nearest;
   return rest >= Quad(0.5) ? nearest + 1 : rest < Quad(-0.5) ? nearest - 1 : nearest;
@@ -41,11 +41,11 @@ bool rule_holds(const Rule& rule, Quad w) {
     case RuleKind::kAbs:
       return absolute(w) >= rule.threshold;
     case RuleKind::kNonzero:
-      return nearest_integer(w) != 0;
+      return rounded_half_up(w) != 0;
     case RuleKind::kPositive:
-      return nearest_integer(w) > 0;
+      return rounded_half_up(w) > 0;
     case RuleKind::kOdd:
-      return static_cast<std::int64_t>(nearest_integer(w)) % 2 != 0;
+      return static_cast<std::int64_t>(rounded_half_up(w)) % 2 != 0;
   }
   return false;
 }
@@ -54,7 +54,7 @@ bool rule_holds(const Rule& rule, Quad w) {
 Quad nearest_threshold(const Rule& rule, Quad w) {
   if (rule.kind == RuleKind::kThreshold) return rule.threshold;
   if (rule.kind == RuleKind::kAbs) return w < 0 ? -Quad(rule.threshold) : Quad(rule.threshold);
-  return nearest_integer(w - Quad(0.5)) + Quad(0.5);
+  return rounded_half_up(w - Quad(0.5)) + Quad(0.5);
 }
 
 // Nothing where w is just so far from the threshold that its error decides whether it counts as reaching it.

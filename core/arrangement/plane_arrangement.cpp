@@ -131,13 +131,13 @@ class FacesOfGroup {
  public:
   FacesOfGroup(const PlaneGroup& group, int axis, const ExactPoints& points)
       : group_(group), axis_(axis), points_(points) {
-    for (const PlaneGroup::Face& face : group.faces) boxes_.push_back(box_of(face.corners));
+    for (const PlaneGroup::Face& face : group.faces) boxes_.push_back(extent_of(face.corners));
   }
 
   // The first face that a piece is part of. None if that takes too long to find.
   [[nodiscard]] std::optional<std::uint32_t> first_with(const PointTriple& piece, Effort& effort) const {
     constexpr std::size_t kPerStep = 64;  // boxes
-    const Extent of_piece = box_of(piece);
+    const Extent of_piece = extent_of(piece);
     for (std::size_t n = 0; n < boxes_.size(); ++n) {
       if (n % kPerStep == 0 && !effort.take()) return std::nullopt;
       if (!holds(boxes_[n], of_piece)) continue;
@@ -153,7 +153,7 @@ class FacesOfGroup {
   };
 
   // Rounding keeps the order of numbers, so that what holds a piece has a box that does.
-  [[nodiscard]] Extent box_of(const PointTriple& corners) const {
+  [[nodiscard]] Extent extent_of(const PointTriple& corners) const {
     const int right = (axis_ + 1) % 3, up = (axis_ + 2) % 3;
     const Vec3 &a = points_.rounded(corners[0]), &b = points_.rounded(corners[1]), &c = points_.rounded(corners[2]);
     const auto [left_end, right_end] = std::minmax({a[right], b[right], c[right]});

@@ -47,8 +47,8 @@ Box box_of(const std::array<Vec3, 4>& corners) {
 }
 Box box_of(const std::array<Vec3, 3>& corners) { return box_of(corners[0], corners[1], corners[2]); }
 
-// By far more than what touches, or rounds.
-Box widened(const Box& box) {
+// Widened by far more than what touches, or rounds.
+Box with_room(const Box& box) {
   constexpr double kPart = 0x1p-6;
   const Vec3 by = kPart * (box.upper - box.lower);
   return {box.lower - by, box.upper + by};
@@ -189,7 +189,7 @@ CreasesHere::Section CreasesHere::section(const std::array<Vec3, 3>& corners, st
 std::optional<Vec3> CreasesHere::nearest_within(const BarycentricCoordinates& within, const Vec3& near,
                                                 CreaseKinds kinds) {
   const Vec3& first_corner = within.corners()[0];
-  const Box box = widened(box_of(within.corners()));
+  const Box box = with_room(box_of(within.corners()));
   Nearest nearest(near);
   for (const Crease& crease : all()) {
     if ((crease.is_fine && kinds == CreaseKinds::kNotFine) || !overlap(crease.box, box)) continue;
@@ -206,7 +206,7 @@ std::optional<Vec3> CreasesHere::nearest_within(const BarycentricCoordinates& wi
 
 std::optional<Vec3> CreasesHere::nearest_end_within(const BarycentricCoordinates& within, const Vec3& near,
                                                     double margin) {
-  const Box box = widened(box_of(within.corners()));
+  const Box box = with_room(box_of(within.corners()));
   Nearest nearest(near);
   for (const Crease& crease : all()) {
     if (crease.is_fine) continue;

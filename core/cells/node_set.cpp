@@ -16,7 +16,7 @@ constexpr std::int64_t kSlabNodes = std::int64_t{1} << 22;
 
 // Eight bytes that are 0 or 1, as bits. The product brings that of byte n to bit 56 + n. No two bits come to one place,
 // so nothing is carried.
-std::uint64_t bits_of(const std::uint8_t* bytes) {
+std::uint64_t eight_bits(const std::uint8_t* bytes) {
   constexpr std::uint64_t kFromLow = 0x0102'0408'1020'4080, kFromHigh = 0x8040'2010'0804'0201;
   std::uint64_t word = 0;
   std::memcpy(&word, bytes, sizeof word);
@@ -36,7 +36,7 @@ std::uint64_t word_of(const std::uint8_t* bytes) {
   if (any == 0) return 0;
   if (all == kOnes) return ~std::uint64_t{0};
   std::uint64_t word = 0;
-  for (unsigned n = 0; n < 64; n += 8) word |= bits_of(bytes + n) << n;
+  for (unsigned n = 0; n < 64; n += 8) word |= eight_bits(bytes + n) << n;
   return word;
 }
 

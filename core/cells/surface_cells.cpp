@@ -25,7 +25,9 @@ std::uint64_t mixed_among(const std::array<const std::uint64_t*, 4>& rows, std::
 }
 
 // By default, compilers do not use the processor's instruction for it; most words are 0.
-std::uint64_t bits_of(std::uint64_t word) { return word == 0 ? 0 : static_cast<std::uint64_t>(std::popcount(word)); }
+std::uint64_t count_of_ones(std::uint64_t word) {
+  return word == 0 ? 0 : static_cast<std::uint64_t>(std::popcount(word));
+}
 
 // The four rows of nodes that a row of cells lies between.
 std::array<const std::uint64_t*, 4> rows_around(const NodeSet& nodes, std::int64_t j, std::int64_t k) {
@@ -48,7 +50,7 @@ void for_each_mixed_word(const NodeSet& nodes, const Visit& visit) {
 
 std::uint64_t mixed_cells(const NodeSet& nodes) {
   std::uint64_t count = 0;
-  for_each_mixed_word(nodes, [&](std::uint64_t cells, auto...) { count += bits_of(cells); });
+  for_each_mixed_word(nodes, [&](std::uint64_t cells, auto...) { count += count_of_ones(cells); });
   return count;
 }
 

@@ -6,7 +6,7 @@ namespace raycone {
 namespace {
 
 // floor(w + 1/2) without rounding of the sum: 0.49999999999999994 + 0.5 is 1 in double.
-double nearest_integer(double w) {
+double rounded_half_up(double w) {
   const double below = std::floor(w);
   return w - below >= 0.5 ? below + 1.0 : below;
 }
@@ -31,7 +31,7 @@ double distance_to_threshold(const Rule& rule, double w) {
     case RuleKind::kPositive:
       return std::abs(w - 0.5);
     case RuleKind::kOdd:
-      return 0.5 - std::abs(w - nearest_integer(w));
+      return 0.5 - std::abs(w - rounded_half_up(w));
   }
   return 0.0;
 }
@@ -47,11 +47,11 @@ bool holds(const Rule& rule, double w) {
     case RuleKind::kAbs:
       return std::abs(w) >= rule.threshold;
     case RuleKind::kNonzero:
-      return nearest_integer(w) != 0.0;
+      return rounded_half_up(w) != 0.0;
     case RuleKind::kPositive:
-      return nearest_integer(w) > 0.0;
+      return rounded_half_up(w) > 0.0;
     case RuleKind::kOdd:
-      return std::fmod(nearest_integer(w), 2.0) != 0.0;
+      return std::fmod(rounded_half_up(w), 2.0) != 0.0;
   }
   return false;
 }

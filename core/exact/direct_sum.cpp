@@ -19,7 +19,8 @@ QuadVec3 relative_to(const QuadVec3& q, const Vec3& v) { return {v.x - q.x, v.y 
 // sums); 240 are paid for.
 constexpr Quad kRoundings = 2 * 10 * 12 * kQuadRounding;
 
-mp_bitcnt_t bits_of(const Corners& corners) {
+// Of the largest coordinate.
+mp_bitcnt_t most_bits(const Corners& corners) {
   std::size_t bits = 1;
   for (const IntegerVec3& p : corners) {
     for (const mpz_class* x : {&p.x, &p.y, &p.z}) bits = std::max(bits, mpz_sizeinbase(x->get_mpz_t(), 2));
@@ -54,7 +55,7 @@ Quad as_quad(const mpf_class& x) {
 // half_solid_angle() of the perturbed query, to 2^-100 wherever it is.
 QuadWithin perturbed_half_solid_angle(const Vec3& va, const Vec3& vb, const Vec3& vc, const Vec3& q) {
   const Corners corners = as_integers({va, vb, vc}, q).corners;
-  const mp_bitcnt_t bits = bits_of(corners), step = 2 * bits + kMargin;
+  const mp_bitcnt_t bits = most_bits(corners), step = 2 * bits + kMargin;
   const auto [a, b, c] = seen_after_steps(corners, step);
   const mpz_class side = dot(a, cross(b, c));
   if (side == 0) return {0, 0};  // of zero area

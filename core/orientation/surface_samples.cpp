@@ -13,7 +13,8 @@
 namespace raycone {
 namespace {
 
-std::uint64_t hash_of(const Vec3& p) {
+// As if random, by the coordinates alone.
+std::uint64_t random_word_of(const Vec3& p) {
   std::uint64_t state = 0;
   for (int axis = 0; axis < 3; ++axis) {
     state = split_mix((state ^ std::bit_cast<std::uint64_t>(p[axis])) + kSplitMixStep);
@@ -110,7 +111,7 @@ int side_of_perturbed(const CanonicalFace& face, const Vec3& q) {
 NumberedVertices::NumberedVertices(std::vector<Vec3> moved, const std::vector<Vec3>& exact_vertices)
     : at(std::move(moved)), number(at.size()), exact(exact_vertices) {
   constexpr std::size_t kGrain = 4096;
-  parallel_for_each(at.size(), kGrain, [&](std::size_t v) { number[v] = hash_of(at[v]); });
+  parallel_for_each(at.size(), kGrain, [&](std::size_t v) { number[v] = random_word_of(at[v]); });
 }
 
 std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces, const NumberedVertices& vertices,

@@ -10,7 +10,8 @@
 namespace raycone {
 namespace {
 
-double nearest_integer(double number) { return (number + 0x1.8p52) - 0x1.8p52; }
+// Of what a float can hold. The sum rounds to a whole number, without a branch.
+bool is_half_integer(double number) { return std::abs(number - ((number + 0x1.8p52) - 0x1.8p52)) == 0.5; }
 
 bool are_equal(std::span<const double> values, const float* nearest) {
   int differ = 0;
@@ -47,7 +48,7 @@ double Narrowing::as_stored(double threshold) const {
 
 float Narrowing::on_side(float stored, double value) const {
   const double number = stored;
-  if (std::abs(number - nearest_integer(number)) == 0.5 && (number > value || number < 0.0)) {
+  if (is_half_integer(number) && (number > value || number < 0.0)) {
     stored = number > value ? down(stored) : up(stored);
   }
   const bool reaches = value >= threshold_;
@@ -106,8 +107,7 @@ bool Narrowing::are_on_their_sides(std::span<const double> values, const float* 
     const double stored = of_magnitude_ ? std::abs(number) : number;
     const bool reaches = (of_magnitude_ ? std::abs(value) : value) >= threshold_;
     const int crosses = reaches ? static_cast<int>(stored < high_) : static_cast<int>(stored >= low_);
-    const int is_half_integer = static_cast<int>(std::abs(number - nearest_integer(number)) == 0.5);
-    wrong |= static_cast<int>(number != value) & (crosses | is_half_integer);
+    wrong |= static_cast<int>(number != value) & (crosses | static_cast<int>(is_half_integer(number)));
   }
   return wrong == 0;
 }

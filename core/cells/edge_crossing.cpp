@@ -14,20 +14,6 @@ namespace {
 
 using Long = long double;
 
-LongVec3 long_difference(const Vec3& a, const Vec3& b) {
-  return {Long{a.x} - Long{b.x}, Long{a.y} - Long{b.y}, Long{a.z} - Long{b.z}};
-}
-
-LongVec3 long_cross(const LongVec3& a, const LongVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
-Long long_dot(const LongVec3& a, const LongVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-LongVec3 long_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-  return long_cross(long_difference(b, a), long_difference(c, a));
-}
-
 // The sign of a cross product of two differences times a third one, as far as that is sure; else 0. `terms`: the
 // magnitudes of the products that `turn` has, added.
 int sure_sign(const Vec3& turn, const Vec3& terms, const Vec3& step) {
@@ -185,13 +171,6 @@ void HitFinder::find(const Vec3& other, bool from_end, std::vector<SegmentHit>& 
   }
   if (hits.size() > 1)
     std::ranges::sort(hits, {}, [](const SegmentHit& hit) { return std::tuple(hit.at, hit.triangle); });
-}
-
-Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const LongVec3 n = long_normal(a, b, c);
-  const Long length = std::sqrt(long_dot(n, n));
-  if (!(length > 0)) return {};
-  return {static_cast<double>(n.x / length), static_cast<double>(n.y / length), static_cast<double>(n.z / length)};
 }
 
 }  // namespace raycone

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "core/cells/long_vec3.h"
+#include "core/data/box.h"
 #include "core/data/triangle_mesh.h"
 
 namespace raycone {
@@ -24,11 +26,6 @@ struct SegmentHit {
 // DefaultFloatingPoint. Thread-safe.
 [[nodiscard]] std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
                                                 const Vec3& c);
-
-// With 64 bits of mantissa, so that differences keep what doubles can store.
-struct LongVec3 {
-  long double x = 0, y = 0, z = 0;
-};
 
 // segment_hit() of segments that have an end in common, with the same triangles. What they have in common is found
 // once.
@@ -76,8 +73,5 @@ class HitFinder {
   std::vector<Known> triangles_;  // the first `count_` of them: others are old
   std::size_t count_ = 0;
 };
-
-// The unit normal of a triangle that has an area; within 1e-15 unless it is a needle.
-[[nodiscard]] Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
 }  // namespace raycone

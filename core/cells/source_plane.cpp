@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/cells/edge_crossing.h"
+#include "core/cells/unit_normal.h"
 
 namespace raycone {
 

@@ -1,6 +1,6 @@
 #include "core/cells/triangle_normals.h"
 
-#include "core/cells/edge_crossing.h"
+#include "core/cells/unit_normal.h"
 #include "core/machine/threads.h"
 
 namespace raycone {

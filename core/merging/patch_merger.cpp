@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/cells/edge_crossing.h"
 #include "core/cells/surface_mesh.h"
 #include "core/cells/triangle_shape.h"
+#include "core/cells/unit_normal.h"
 
 namespace raycone {
 namespace {

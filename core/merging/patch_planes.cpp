@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/cells/edge_crossing.h"
+#include "core/cells/unit_normal.h"
 
 namespace raycone {
 

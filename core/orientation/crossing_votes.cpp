@@ -15,10 +15,11 @@ namespace {
 // With `axis` along x.
 Vec3 turned_to_x(const Vec3& p, int axis) { return {p[axis], p[(axis + 1) % 3], p[(axis + 2) % 3]}; }
 
-Vec3 unit_normal(const CanonicalFace& face) {
+// Of the angle between the front's normal and an axis; 0 where there is no area.
+double cosine_to_axis(const CanonicalFace& face, int axis) {
   const Vec3 normal = face.sign * cross(face.corners[1] - face.corners[0], face.corners[2] - face.corners[0]);
   const double length = std::sqrt(dot(normal, normal));
-  return length > 0.0 ? (1.0 / length) * normal : Vec3{};
+  return length > 0.0 ? (1.0 / length) * normal[axis] : 0.0;
 }
 
 class AxisRays {
@@ -27,7 +28,7 @@ class AxisRays {
       : vertices_(vertices), axis_(axis), mesh_(turned(faces, vertices, axis)), grid_(mesh_) {}
 
   [[nodiscard]] double vote(const SurfaceSample& sample) const {
-    const double across = unit_normal(sample.face)[axis_];
+    const double across = cosine_to_axis(sample.face, axis_);
     const Vec3 q = turned_to_x(sample.at, axis_);
     constexpr double kBeforeAll = -2.0;
     const std::array<double, 2> xs{kBeforeAll, q.x};

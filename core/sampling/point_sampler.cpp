@@ -35,7 +35,7 @@ long double norm(const AreaVector& v) { return std::sqrt(v.x * v.x + v.y * v.y +
 long double exact_doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) { return norm(area_vector(a, b, c)); }
 
 // Of a triangle with an area, whatever its shape and size.
-Vec3 unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+Vec3 exact_unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   const AreaVector v = area_vector(a, b, c);
   const long double size = norm(v);
   return {static_cast<double>(v.x / size), static_cast<double>(v.y / size), static_cast<double>(v.z / size)};
@@ -191,7 +191,7 @@ void PointSampler::set_normals(std::span<const std::int64_t> faces, std::span<Ve
       return;
     }
     const Triangle& t = mesh_.triangles[static_cast<std::size_t>(faces[n])];
-    normals[n] = unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
+    normals[n] = exact_unit_normal(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]]);
   });
 }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/cells/edge_crossing.h"
 #include "core/cells/source_plane.h"
+#include "core/cells/unit_normal.h"
 #include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
 

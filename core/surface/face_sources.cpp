@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "core/cells/cell_creases.h"
-#include "core/cells/edge_crossing.h"
 #include "core/cells/surface_mesh.h"
+#include "core/cells/unit_normal.h"
 #include "core/machine/numbers_where.h"
 #include "core/machine/threads.h"
 

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/cells/edge_crossing.h"
+#include "core/cells/unit_normal.h"
 #include "core/distance/distance.h"
 #include "core/exact/scale.h"
 #include "core/machine/threads.h"

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/cells/edge_crossing.h"
+#include "core/cells/unit_normal.h"
 #include "core/distance/distance.h"
 #include "core/machine/floating_point.h"
 #include "tests/support/shapes.h"

@@ -19,8 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/cells/edge_crossing.h"
 #include "core/cells/surface_cells.h"
+#include "core/cells/unit_normal.h"
 #include "core/certificate/certificate.h"
 #include "core/distance/distance.h"
 #include "core/filling/mesh_as_surface.h"

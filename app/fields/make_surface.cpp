@@ -145,7 +145,8 @@ MadeSurface make_surface(const ChosenInput& input, const TriangleMesh& mesh, con
   });
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options), tally, {}};
   if (options.at_stage) options.at_stage("measuring");
-  const double farthest = farthest_kept(mesh, lattice, closed.own.has_value(), options.precision);
+  const SurfaceFaces faces = closed.own ? SurfaceFaces::kOfMesh : SurfaceFaces::kOfContour;
+  const double farthest = farthest_kept(mesh, lattice, faces, options.precision);
   DroppedSamples samples(made.surface, inside, options.thickness, farthest + options.thickness + options.simplify,
                          closed.own ? std::move(closed.own->held) : std::vector<bool>());
   const DroppedArea dropped = dropped_area(mesh, samples);

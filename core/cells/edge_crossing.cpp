@@ -138,27 +138,27 @@ HitFinder::Passage HitFinder::passage(const Known& t, const Vec3& other) const {
   return sides[0] * sides[1] * sides[2] == 0 ? Passage::kAtSide : Passage::kInside;
 }
 
-std::optional<SegmentHit> HitFinder::hit(Known& t, const Vec3& other, bool from_end) const {
+std::optional<SegmentHit> HitFinder::hit(Known& t, const Vec3& other, Way way) const {
   if (!t.has_sides) find_sides(t);
   const int side = plane_side_of(t, other);
   if (side == t.side) return std::nullopt;  // both 0, too
   const Passage how = passage(t, other);
   if (how == Passage::kBeside) return std::nullopt;
-  if (t.side == 0) return SegmentHit{from_end ? 0.0 : 1.0, t.triangle};
-  if (side == 0) return SegmentHit{from_end ? 1.0 : 0.0, t.triangle};
+  if (t.side == 0) return SegmentHit{way == Way::kFromEnd ? 0.0 : 1.0, t.triangle};
+  if (side == 0) return SegmentHit{way == Way::kFromEnd ? 1.0 : 0.0, t.triangle};
   if (!t.has_distance) {
     t.of_end = std::abs(long_dot(t.long_normal, long_difference(end_, *t.a)));
     t.has_distance = true;
   }
   const Long of_other = std::abs(long_dot(t.long_normal, long_difference(other, *t.a)));
   const double terms = distance_terms(t.normal.terms, end_, other, *t.a);
-  const double at = from_end ? place_between(t.of_end, of_other, terms, end_, other, *t.a, *t.b, *t.c)
-                             : place_between(of_other, t.of_end, terms, other, end_, *t.a, *t.b, *t.c);
-  const int behind = from_end ? side : t.side;  // of the plane, in front of which w is less by one
+  const double at = way == Way::kFromEnd ? place_between(t.of_end, of_other, terms, end_, other, *t.a, *t.b, *t.c)
+                                         : place_between(of_other, t.of_end, terms, other, end_, *t.a, *t.b, *t.c);
+  const int behind = way == Way::kFromEnd ? side : t.side;  // of the plane, in front of which w is less by one
   return SegmentHit{at, t.triangle, static_cast<std::int8_t>(how == Passage::kInside ? -behind : 0)};
 }
 
-void HitFinder::find(const Vec3& other, bool from_end, std::vector<SegmentHit>& hits) {
+void HitFinder::find(const Vec3& other, Way way, std::vector<SegmentHit>& hits) {
   hits.clear();
   const Vec3 lower{std::min(end_.x, other.x), std::min(end_.y, other.y), std::min(end_.z, other.z)};
   const Vec3 upper{std::max(end_.x, other.x), std::max(end_.y, other.y), std::max(end_.z, other.z)};
@@ -167,7 +167,7 @@ void HitFinder::find(const Vec3& other, bool from_end, std::vector<SegmentHit>& 
         upper.z < t.box.lower.z || lower.z > t.box.upper.z) {
       continue;
     }
-    if (const std::optional<SegmentHit> one = hit(t, other, from_end)) hits.push_back(*one);
+    if (const std::optional<SegmentHit> one = hit(t, other, way)) hits.push_back(*one);
   }
   if (hits.size() > 1)
     std::ranges::sort(hits, {}, [](const SegmentHit& hit) { return std::tuple(hit.at, hit.triangle); });

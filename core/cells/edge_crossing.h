@@ -37,9 +37,10 @@ class HitFinder {
   // From now on it is about segments of this end, and these triangles of the mesh.
   void enter(const Vec3& end, std::span<const std::uint32_t> triangles);
 
-  // Sets `hits` to those from the end to `other`, or back; of equal ones the lowest triangle first. Jumps are known
-  // where the segment leads from one side of the triangle to the other, through its inside.
-  void find(const Vec3& other, bool from_end, std::vector<SegmentHit>& hits);
+  enum class Way : std::uint8_t { kFromEnd, kToEnd };
+  // Sets `hits` to those on the way from the end to `other`, or back; of equal ones the lowest triangle first. Jumps
+  // are known where the segment leads from one side of the triangle to the other, through its inside.
+  void find(const Vec3& other, Way way, std::vector<SegmentHit>& hits);
 
  private:
   // The cross product of two differences of points.
@@ -66,7 +67,7 @@ class HitFinder {
   [[nodiscard]] static int plane_side_of(const Known& t, const Vec3& p);
   enum class Passage : std::uint8_t { kBeside, kAtSide, kInside };
   [[nodiscard]] Passage passage(const Known& t, const Vec3& other) const;
-  [[nodiscard]] std::optional<SegmentHit> hit(Known& t, const Vec3& other, bool from_end) const;
+  [[nodiscard]] std::optional<SegmentHit> hit(Known& t, const Vec3& other, Way way) const;
 
   Vec3 end_;
   const TriangleMesh& mesh_;

@@ -109,7 +109,11 @@ void EdgePointFinder::find_hits(std::uint32_t number, HitFinder& finder, std::ve
   const bool from_inside = cell.is_inside(0);
   finder.enter(cells_.corner(cell, 0), triangles_.of(number));
   cells_.for_each_edge(cell, [&](const MixedEdge& edge) {
-    finder.find(from_inside ? edge.outside : edge.inside, from_inside, hits);
+    if (from_inside) {
+      finder.find(edge.outside, HitFinder::Way::kFromEnd, hits);
+    } else {
+      finder.find(edge.inside, HitFinder::Way::kToEnd, hits);
+    }
     keep_places(hits);
     // A closed mesh changes w nowhere else.
     if (rule_.is_closed() && hits.size() == 1) {

@@ -118,13 +118,13 @@ void FillFaces::divide(const Part& part, const Vec3& p) {
   }
 }
 
-void FillFaces::add_octahedron(const std::array<Vec3, 6>& tips, bool outward) {
+void FillFaces::add_octahedron(const std::array<Vec3, 6>& tips, Fronts fronts) {
   const auto first = static_cast<std::uint32_t>(surface_.mesh.vertices.size());
   surface_.mesh.vertices.insert(surface_.mesh.vertices.end(), tips.begin(), tips.end());
   for (std::uint32_t octant = 0; octant < 8; ++octant) {
     const std::uint32_t x = octant & 1U, y = octant >> 1U & 1U, z = octant >> 2U;
     Triangle face{first + x, first + 2 + y, first + 4 + z};
-    if ((x ^ y ^ z ^ static_cast<std::uint32_t>(outward)) != 0) std::swap(face[1], face[2]);
+    if ((x ^ y ^ z ^ static_cast<std::uint32_t>(fronts == Fronts::kOutward)) != 0) std::swap(face[1], face[2]);
     add_face(face);
     add_edges_of(face);
   }

@@ -52,9 +52,10 @@ class FillFaces {
   void divide(const Part& part, const Vec3& p);
   void update_edges();
 
-  // Adds an octahedron, whose tips are below and above a point along x, then y, then z; its fronts look outward, or
-  // inward. inner_edges() stay what they were until update_edges().
-  void add_octahedron(const std::array<Vec3, 6>& tips, bool outward);
+  enum class Fronts : std::uint8_t { kOutward, kInward };
+  // Adds an octahedron, whose tips are below and above a point along x, then y, then z. inner_edges() stay what they
+  // were until update_edges().
+  void add_octahedron(const std::array<Vec3, 6>& tips, Fronts fronts);
 
   // Flips inner edges whose opposite angles sum up to more than 180 degrees (Delaunay), where faces do not turn over by
   // that, and no edge comes twice, or again. Returns the faces that have changed. Ends with update_edges().

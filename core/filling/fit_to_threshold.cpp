@@ -299,7 +299,8 @@ class ThresholdFit {
         const double reach = kIsland * (root ? norm(*root - line.point) : voxel_);
         tips[tip] = rounded_to(options_.precision, line.point + std::max(reach, least) * line.direction);
       }
-      fill_.add_octahedron(tips, nodes[n].is_inside);
+      using Fronts = FillFaces::Fronts;
+      fill_.add_octahedron(tips, nodes[n].is_inside ? Fronts::kOutward : Fronts::kInward);
     }
     fill_.update_edges();
     is_settled_.resize(fill_.size(), true);

@@ -69,9 +69,9 @@ struct DroppedSamples::Part {
   std::vector<bool> dropped{};
 };
 
-double farthest_kept(const TriangleMesh& mesh, const Lattice& lattice, bool own_faces, VertexPrecision precision) {
+double farthest_kept(const TriangleMesh& mesh, const Lattice& lattice, SurfaceFaces faces, VertexPrecision precision) {
   const double off_contour = kOffContour * safe_norm(lattice.spacing);
-  if (!own_faces) return off_contour;
+  if (faces == SurfaceFaces::kOfContour) return off_contour;
   constexpr double kTolerances = 2.0;  // two planes may each be off by one
   constexpr double kSingle = 0x1p-22;  // of a coordinate: more than it is off in single precision
   const double rounding = precision == VertexPrecision::kSingle ? kSingle * largest_coordinate(lattice) : 0.0;

@@ -27,10 +27,13 @@ struct AreaSamples {
 // Adds those of a triangle, no farther apart than a step; some 32 000 at most.
 void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step);
 
+// What the faces of a surface are.
+enum class SurfaceFaces : std::uint8_t { kOfMesh, kOfContour };
+
 // A point of a mesh that is farther than this from a surface made of it, in world units, is dropped: of a surface that
 // has the mesh's own faces, more than these are moved where they are cut or merged; of a contour, what it cuts off
 // edges at most, as a rule. Without thickness, and not simplified. `precision`: of the surface's vertices.
-[[nodiscard]] double farthest_kept(const TriangleMesh& mesh, const Lattice& lattice, bool own_faces,
+[[nodiscard]] double farthest_kept(const TriangleMesh& mesh, const Lattice& lattice, SurfaceFaces faces,
                                    VertexPrecision precision);
 
 // Finds the points that are dropped: farther from the surface than `farthest`. Where the set has no thickness, also

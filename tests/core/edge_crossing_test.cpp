@@ -58,7 +58,7 @@ TEST(HitFinder, FindsWhatSegmentsHitOneByOne) {
           const bool from_end = others % 2 == 0;
           const Vec3 &p = from_end ? end : other, &q = from_end ? other : end;
           std::vector<SegmentHit> hits;
-          finder.find(other, from_end, hits);
+          finder.find(other, from_end ? HitFinder::Way::kFromEnd : HitFinder::Way::kToEnd, hits);
           for (std::uint32_t triangle = 0; triangle < 3; ++triangle) {
             const Triangle& t = mesh.triangles[triangle];
             const auto hit = std::ranges::find(hits, triangle, &SegmentHit::triangle);
@@ -101,7 +101,7 @@ TEST(SegmentHit, IsRightWhereTheSegmentIsNearlyInThePlane) {
     std::vector<SegmentHit> found;
     const std::vector<std::uint32_t> all{0};
     finder.enter(p, all);
-    finder.find(q, true, found);
+    finder.find(q, HitFinder::Way::kFromEnd, found);
     ASSERT_EQ(found.size(), 1U);
     EXPECT_EQ(found[0].at, *at);
   }
@@ -153,7 +153,7 @@ TEST(EdgeCrossing, PlacesAreRightWhereBothEndsAreNextToThePlane) {
     HitFinder finder(mesh);
     finder.enter(p, std::vector<std::uint32_t>{0});
     std::vector<SegmentHit> hits;
-    finder.find(q, true, hits);
+    finder.find(q, HitFinder::Way::kFromEnd, hits);
     ASSERT_EQ(hits.size(), 1U);
     EXPECT_EQ(hits[0].at, *at);
   }
@@ -194,7 +194,7 @@ TEST(EdgeCrossing, JumpsAreThoseOfTheWindingNumber) {
     finder.enter(end, std::vector<std::uint32_t>{0});
     for (const bool from_end : {true, false}) {
       std::vector<SegmentHit> hits;
-      finder.find(other, from_end, hits);
+      finder.find(other, from_end ? HitFinder::Way::kFromEnd : HitFinder::Way::kToEnd, hits);
       if (hits.empty()) continue;
       ASSERT_EQ(hits.size(), 1U);
       const Vec3 &p = from_end ? end : other, &q = from_end ? other : end;
@@ -216,7 +216,7 @@ TEST(EdgeCrossing, JumpsAreNotKnownAtSides) {
   const auto jump = [&](const Vec3& end, const Vec3& other) {
     finder.enter(end, std::vector<std::uint32_t>{0});
     std::vector<SegmentHit> hits;
-    finder.find(other, true, hits);
+    finder.find(other, HitFinder::Way::kFromEnd, hits);
     return hits.empty() ? 99 : int{hits[0].jump};
   };
   EXPECT_EQ(jump({0.25, 0.25, -1}, {0.25, 0.25, 1}), -1);  // to its front, where w is less

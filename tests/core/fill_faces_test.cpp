@@ -22,17 +22,17 @@ TEST(FillFaces, AddsOctahedra) {
   const TriangleMesh box = test::open_box();
   SurfaceMesh surface{closed_by_caps(box, exterior_edges(box)), {}};
   surface.sources.assign(12, 0);
-  for (const bool outward : {true, false}) {
+  for (const FillFaces::Fronts fronts : {FillFaces::Fronts::kOutward, FillFaces::Fronts::kInward}) {
     FillFaces fill(surface);
     const std::uint32_t before = fill.size();
     const std::size_t edges = fill.inner_edges().size();
     const double volume = mesh_statistics(fill.mesh()).signed_volume.value();
-    fill.add_octahedron({Vec3{3, 0, 0}, {6, 0, 0}, {4, -1, 0}, {4, 1, 0}, {4, 0, -2}, {4, 0, 1}}, outward);
+    fill.add_octahedron({Vec3{3, 0, 0}, {6, 0, 0}, {4, -1, 0}, {4, 1, 0}, {4, 0, -2}, {4, 0, 1}}, fronts);
     fill.update_edges();
     EXPECT_EQ(fill.size(), before + 8);
     EXPECT_EQ(fill.inner_edges().size(), edges + 12);
     const double added = mesh_statistics(fill.mesh()).signed_volume.value() - volume;
-    EXPECT_NEAR(added, outward ? 3.0 : -3.0, 1e-12);  // a sixth of 3 times 2 times 3
+    EXPECT_NEAR(added, fronts == FillFaces::Fronts::kOutward ? 3.0 : -3.0, 1e-12);  // a sixth of 3 times 2 times 3
     fill.put_back();
   }
 }
@@ -104,7 +104,8 @@ TEST(FillFaces, KeepsItsInnerEdges) {
       fill.divide(part, 1.01 * fill.middle(one));
     }
     if (round % 4 == 0)
-      fill.add_octahedron({Vec3{3, 0, 0}, {6, 0, 0}, {4, -1, 0}, {4, 1, 0}, {4, 0, -2}, {4, 0, 1}}, true);
+      fill.add_octahedron({Vec3{3, 0, 0}, {6, 0, 0}, {4, -1, 0}, {4, 1, 0}, {4, 0, -2}, {4, 0, 1}},
+                          FillFaces::Fronts::kOutward);
     fill.update_edges();
     flipped += fill.flip_edges().size();
     const std::vector<EdgeOfTwo> kept = inner_edges_of(fill);

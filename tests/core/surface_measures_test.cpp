@@ -27,14 +27,14 @@ using test::surface_of;
 using test::uniform;
 
 DroppedSamples dropped_samples(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside,
-                               double thickness = 0.0, bool own_faces = false) {
-  const double farthest = farthest_kept(mesh, inside.lattice(), own_faces, VertexPrecision::kDouble) + thickness;
+                               double thickness = 0.0, SurfaceFaces faces = SurfaceFaces::kOfContour) {
+  const double farthest = farthest_kept(mesh, inside.lattice(), faces, VertexPrecision::kDouble) + thickness;
   return {surface, inside, thickness, farthest, {}};
 }
 
 DroppedArea dropped_of(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside,
-                       bool own_faces = false) {
-  DroppedSamples dropped = dropped_samples(surface, mesh, inside, 0.0, own_faces);
+                       SurfaceFaces faces = SurfaceFaces::kOfContour) {
+  DroppedSamples dropped = dropped_samples(surface, mesh, inside, 0.0, faces);
   return dropped_area(mesh, dropped);
 }
 
@@ -63,7 +63,7 @@ TEST(SurfaceMeasures, TellFacesNextToTheSurfaceFromItsOwn) {
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     mesh.vertices.insert(mesh.vertices.end(), {{x, 0.2, 0.2}, {x, 0.8, 0.2}, {x, 0.2, 0.8}});
     mesh.triangles.push_back({first, first + 1, first + 2});
-    return dropped_of(surface, mesh, inside, true).area;
+    return dropped_of(surface, mesh, inside, SurfaceFaces::kOfMesh).area;
   };
   EXPECT_EQ(dropped_at(0.001), 0.0);
   EXPECT_NEAR(dropped_at(0.01), 0.18, 1e-12);
@@ -76,7 +76,7 @@ TEST(SurfaceMeasures, AreAsFineFarAway) {
     return Lattice{bounding_box(mesh).lower, {0.1, 0.1, 0.1}, {-1, -1, -1}, {12, 12, 12}};
   };
   const auto off = [&](const TriangleMesh& mesh, VertexPrecision precision) {
-    return farthest_kept(mesh, lattice_of(mesh), true, precision);
+    return farthest_kept(mesh, lattice_of(mesh), SurfaceFaces::kOfMesh, precision);
   };
   EXPECT_NEAR(off(box, VertexPrecision::kDouble), 2e-4, 1e-4);  // 2^-9 voxels
   EXPECT_NEAR(off(far, VertexPrecision::kDouble), 2e-4, 1e-4);
@@ -98,10 +98,9 @@ TEST(SurfaceMeasures, DropWhatIsFarPointByPoint) {
     mesh.triangles.push_back({first, first + 1, first + 2});
   }
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
-  for (const bool own_faces : {false, true}) {
-    DroppedSamples dropped = dropped_samples(surface, mesh, inside, 0.25 * lattice.spacing.x, own_faces);
-    const double farthest =
-        farthest_kept(mesh, lattice, own_faces, VertexPrecision::kDouble) + 0.25 * lattice.spacing.x;
+  for (const SurfaceFaces faces : {SurfaceFaces::kOfContour, SurfaceFaces::kOfMesh}) {
+    DroppedSamples dropped = dropped_samples(surface, mesh, inside, 0.25 * lattice.spacing.x, faces);
+    const double farthest = farthest_kept(mesh, lattice, faces, VertexPrecision::kDouble) + 0.25 * lattice.spacing.x;
     std::size_t count = 0, far = 0;
     dropped.for_each(mesh, [&](const AreaSamples& samples, const std::vector<bool>& is_dropped) {
       std::vector<double> distances(samples.points.size());

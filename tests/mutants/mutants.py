@@ -720,7 +720,7 @@ MUTANTS = [
     Mutant("other_evaluators_in_scale", "scaled meshes have evaluators with the same accuracies", [
         ("core/surface/surface_in_scale.cpp", "evaluator.asked_accuracy()", "(void(evaluator), Accuracy{})")]),
     Mutant("islands_inside_out", "the part that a node gets has the node on its side", [
-        ("core/filling/fit_to_threshold.cpp", "fill_.add_octahedron(tips, nodes[n].is_inside);", "fill_.add_octahedron(tips, !nodes[n].is_inside);")]),
+        ("core/filling/fit_to_threshold.cpp", "nodes[n].is_inside ? Fronts::kOutward", "!nodes[n].is_inside ? Fronts::kOutward")]),
     Mutant("sheets_are_thick", "what ends within half a voxel behind a sheet is too thin", [
         ("core/filling/fill_check.cpp", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.5;", "constexpr double kStep = 0.5, kAside = 0x1p-20, kThin = 0.001;")]),
     Mutant("any_filling", "what closes holes must be near to the threshold", [

@@ -12,9 +12,9 @@
 
 namespace raycone {
 
-void BatchProgress::add(bool failed, double part) {
+void BatchProgress::add(MeshStatus status, double part) {
   ++done_;
-  failed_ += failed ? 1 : 0;
+  failed_ += status == MeshStatus::kOk ? 0 : 1;
   part_ = part;
   if (style_ == Style::kLines && done_ == meshes_) return write_line();
   show();
@@ -53,8 +53,8 @@ void BatchProgress::erase() {
   if (std::exchange(drawn_, false)) erase_line();
 }
 
-BatchProgress::Style progress_style(ProgressMode mode, bool quiet) {
-  if (!progress_is_shown(mode, quiet, "")) return BatchProgress::Style::kNone;
+BatchProgress::Style progress_style(ProgressMode mode) {
+  if (!progress_is_shown(mode, "")) return BatchProgress::Style::kNone;
   return isatty(STDERR_FILENO) == 1 ? BatchProgress::Style::kRewritten : BatchProgress::Style::kLines;
 }
 

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstddef>
 
+#include "app/batch/result_row.h"
 #include "app/process/progress.h"
 
 namespace raycone {
@@ -20,8 +21,8 @@ class BatchProgress {
   BatchProgress(const BatchProgress&) = delete;
   BatchProgress& operator=(const BatchProgress&) = delete;
 
-  // `part` of the work is done, 0 to 1.
-  void add(bool failed, double part);
+  // A mesh is done, and so is `part` of the work, 0 to 1.
+  void add(MeshStatus status, double part);
   // To be called again and again.
   void show();
   // To be called before anything else is printed.
@@ -45,6 +46,6 @@ class BatchProgress {
 };
 
 // As standard error is a terminal or not.
-[[nodiscard]] BatchProgress::Style progress_style(ProgressMode mode, bool quiet);
+[[nodiscard]] BatchProgress::Style progress_style(ProgressMode mode);
 
 }  // namespace raycone

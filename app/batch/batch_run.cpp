@@ -29,7 +29,7 @@ BatchRun::BatchRun(const BatchCommand& command, const PlanOptions& options, Batc
       options_(options),
       work_(std::move(work)),
       results_(command.directory, command.shard),
-      progress_(progress_style(command.run.progress, command.run.quiet), work_.plan.todo.size()) {}
+      progress_(progress_style(command.run.progress_mode()), work_.plan.todo.size()) {}
 
 int BatchRun::run(const SupervisorOptions& limits) {
   const HeldSignals signals;
@@ -127,7 +127,7 @@ bool BatchRun::take(std::size_t job, JobResult result, double part) {
   for (const std::string& warning : warnings) {
     if (!command_.run.quiet) print_message("warning: " + mesh.path + ": " + warning);
   }
-  progress_.add(failed, part);
+  progress_.add(record.row.status, part);
   outcome_.evaluated.insert_or_assign(mesh.name, std::move(record));
   return !(failed && command_.fail_fast);
 }

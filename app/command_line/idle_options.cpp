@@ -9,18 +9,13 @@
 namespace raycone {
 namespace {
 
-// Flags have no text of their own.
-void refuse(const Values& values, const std::string& name, bool flag, const std::string& because) {
-  if (!values.given(name)) return;
-  throw UsageError(name + (flag ? "" : " " + values.text(name)) + ": has no effect " + because);
-}
-
 void refuse_flag(const Values& values, const std::string& name, const std::string& because) {
-  refuse(values, name, true, because);
+  if (values.given(name)) throw UsageError(name + ": has no effect " + because);
 }
 
+// Says the value that the option was given, too.
 void refuse_option(const Values& values, const std::string& name, const std::string& because) {
-  refuse(values, name, false, because);
+  if (values.given(name)) throw UsageError(name + ' ' + values.text(name) + ": has no effect " + because);
 }
 
 constexpr const char* kNoDigits = "on inside and label, which are no real numbers, expected another field";
@@ -32,11 +27,12 @@ bool draws_in_box(const SampleRequest& request) {
                              [](const SampleGroup& group) { return std::holds_alternative<UniformSamples>(group); });
 }
 
-// `stores_numbers`: besides those of fields, as points are.
-void refuse_idle_encoding(const Values& values, const FieldOptions& field, const FieldEncoding& encoding,
-                          bool stores_numbers) {
+void refuse_idle_dtype(const Values& values, const FieldEncoding& encoding, bool has_numbers) {
   if (is_text(encoding.format)) refuse_option(values, "--dtype", kOnCsv);
-  if (!field.has_numbers() && !stores_numbers) refuse_option(values, "--dtype", kNoDigits);
+  if (!has_numbers) refuse_option(values, "--dtype", kNoDigits);
+}
+
+void refuse_idle_pack_bits(const Values& values, const FieldEncoding& encoding, const FieldOptions& field) {
   if (encoding.format != FieldFormat::kNpz) refuse_flag(values, "--pack-bits", "on this format, expected npz");
   if (!field.has(Field::kInside)) refuse_flag(values, "--pack-bits", "without --field inside");
 }
@@ -60,7 +56,8 @@ void refuse_idle_depfile(const Values& values, const OutputFiles& output) {
 }
 
 void refuse_idle_options(const Values& values, const LatticeCommand& command) {
-  refuse_idle_encoding(values, command.field, command.encoding, false);
+  refuse_idle_dtype(values, command.encoding, command.field.has_numbers());
+  refuse_idle_pack_bits(values, command.encoding, command.field);
   refuse_idle_rule(values, command.field, "inside, sdf, solid or label");
   refuse_idle_parts(values, command.field);
   refuse_idle_depfile(values, command.output);
@@ -74,7 +71,9 @@ void refuse_idle_options(const Values& values, const LatticeCommand& command) {
 }
 
 void refuse_idle_options(const Values& values, const PointsCommand& command) {
-  refuse_idle_encoding(values, command.field, command.encoding, command.sample.has_value());
+  const bool stores_points = command.sample.has_value();
+  refuse_idle_dtype(values, command.encoding, command.field.has_numbers() || stores_points);
+  refuse_idle_pack_bits(values, command.encoding, command.field);
   refuse_idle_rule(values, command.field, "inside, sdf or label");
   refuse_idle_parts(values, command.field);
   refuse_idle_depfile(values, command.output);

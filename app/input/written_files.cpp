@@ -18,8 +18,13 @@ namespace {
 
 std::string name_of_output(const std::string& path) { return path == "-" ? "standard output" : path; }
 
-std::vector<WrittenFile> files_written(const OutputFiles& output, bool text) {
-  std::vector<WrittenFile> written{{output.path, "output", text}};
+template <class Format>
+FileContent content_of(Format format) {
+  return is_text(format) ? FileContent::kText : FileContent::kBytes;
+}
+
+std::vector<WrittenFile> files_written(const OutputFiles& output, FileContent content) {
+  std::vector<WrittenFile> written{{output.path, "output", content}};
   if (output.report) written.push_back({*output.report, "report"});
   if (output.depfile) written.push_back({*output.depfile, "depfile"});
   return written;
@@ -42,23 +47,23 @@ std::vector<std::string> inputs_of(const MeshOptions& mesh,
 }  // namespace
 
 std::vector<WrittenFile> files_written(const LatticeCommand& command) {
-  std::vector<WrittenFile> written = files_written(command.output, is_text(command.encoding.format));
+  std::vector<WrittenFile> written = files_written(command.output, content_of(command.encoding.format));
   if (const std::optional<std::string> names = label_names_path(command)) written.push_back({*names, "label names"});
   return written;
 }
 
 std::vector<WrittenFile> files_written(const PointsCommand& command) {
-  return files_written(command.output, is_text(command.encoding.format));
+  return files_written(command.output, content_of(command.encoding.format));
 }
 
 std::vector<WrittenFile> files_written(const SliceCommand& command) {
-  std::vector<WrittenFile> written = files_written(command.output, false);
-  if (command.values) written.push_back({*command.values, "values", false});
+  std::vector<WrittenFile> written = files_written(command.output, FileContent::kBytes);
+  if (command.values) written.push_back({*command.values, "values", FileContent::kBytes});
   return written;
 }
 
 std::vector<WrittenFile> files_written(const SurfaceCommand& command) {
-  return files_written(command.output, is_text(command.format));
+  return files_written(command.output, content_of(command.format));
 }
 
 std::vector<WrittenFile> files_written(const InfoCommand& command) {
@@ -127,8 +132,8 @@ void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std:
 }
 
 void refuse_terminal(const std::vector<WrittenFile>& written) {
-  const bool bytes =
-      std::ranges::any_of(written, [](const WrittenFile& file) { return file.path == "-" && !file.text; });
+  const bool bytes = std::ranges::any_of(
+      written, [](const WrittenFile& file) { return file.path == "-" && file.content == FileContent::kBytes; });
   if (!bytes || !isatty(STDOUT_FILENO)) return;
   throw UsageError("standard output: is a terminal, which cannot show this format; expected -o FILE, or a pipe behind");
 }

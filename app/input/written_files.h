@@ -15,11 +15,16 @@
 
 namespace raycone {
 
+enum class FileContent {
+  kText,  // which a terminal can show
+  kBytes,
+};
+
 // What a command writes, and as what: "output", "report", ...
 struct WrittenFile {
   std::string path;  // "-": standard output
   std::string role;
-  bool text = true;  // which a terminal can show
+  FileContent content = FileContent::kText;
 };
 [[nodiscard]] std::vector<WrittenFile> files_written(const LatticeCommand& command);
 [[nodiscard]] std::vector<WrittenFile> files_written(const PointsCommand& command);

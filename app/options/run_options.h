@@ -19,6 +19,9 @@ struct RunOptions {
   bool strict = false;
   std::vector<std::string> options;  // given ones that results depend on, for files to keep
   std::vector<std::string> words;    // the command line
+
+  // Those who want quiet want none.
+  [[nodiscard]] ProgressMode progress_mode() const { return quiet ? ProgressMode::kNever : progress; }
 };
 
 }  // namespace raycone

@@ -165,19 +165,19 @@ void draw_lines(Image& image, const PlaneView& view, std::span<const double> val
 
 }  // namespace
 
-Image slice_picture(const PlaneView& view, const PictureValues& values, const TriangleMesh& mesh, bool framed) {
+Image slice_picture(const PlaneView& view, const PictureValues& values, const TriangleMesh& mesh, PictureFrame frame) {
   const Appearance appearance = appearance_of(values, view);
   Image image = coloured(view, values.values, appearance.colour);
   draw_lines(image, view, values.values, mesh, appearance.contours);
-  if (!framed || !has_frame(view)) return image;
+  if (frame == PictureFrame::kNone || !has_frame(view)) return image;
   return framed_picture(image, view, appearance.legend, values.titles);
 }
 
 // One after the other: the values sorted for the range of colours; the image and coverages; the image and its page.
-double slice_picture_bytes(const PlaneView& view, bool framed) {
+double slice_picture_bytes(const PlaneView& view, PictureFrame frame) {
   constexpr double kSorted = sizeof(double), kImage = sizeof(Rgb), kCoverages = 3;  // per pixel
   const double pixels = static_cast<double>(view.width) * static_cast<double>(view.height);
-  const double page = framed && has_frame(view) ? framed_picture_bytes(view) : 0.0;
+  const double page = frame != PictureFrame::kNone && has_frame(view) ? framed_picture_bytes(view) : 0.0;
   return std::max(pixels * kSorted, pixels * kImage + std::max(pixels * kCoverages, page));
 }
 

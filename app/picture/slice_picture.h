@@ -26,12 +26,16 @@ struct PictureValues {
   std::span<const std::string> titles = {};  // the first one that there is room for is above a framed picture
 };
 
-// Their colours, with contour lines and the curve where the plane cuts `mesh`. `framed`: with axes and legend around
-// it, where there is room for them (framed_picture.h).
+enum class PictureFrame {
+  kNone,
+  kAxesAndLegend,  // around the picture, where there is room for them (framed_picture.h)
+};
+
+// Their colours, with contour lines and the curve where the plane cuts `mesh`.
 [[nodiscard]] Image slice_picture(const PlaneView& view, const PictureValues& values, const TriangleMesh& mesh,
-                                  bool framed);
+                                  PictureFrame frame);
 
 // An upper bound of the bytes that it takes, its result included.
-[[nodiscard]] double slice_picture_bytes(const PlaneView& view, bool framed);
+[[nodiscard]] double slice_picture_bytes(const PlaneView& view, PictureFrame frame);
 
 }  // namespace raycone

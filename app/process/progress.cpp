@@ -44,8 +44,8 @@ std::string readable_time(double seconds) {
   return text;
 }
 
-bool progress_is_shown(ProgressMode mode, bool quiet, const std::string& output) {
-  if (quiet || mode == ProgressMode::kNever) return false;
+bool progress_is_shown(ProgressMode mode, const std::string& output) {
+  if (mode == ProgressMode::kNever) return false;
   if (mode == ProgressMode::kAlways) return true;
   const bool results_on_terminal = output == "-" && isatty(STDOUT_FILENO);
   return isatty(STDERR_FILENO) && !results_on_terminal;

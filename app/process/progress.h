@@ -15,8 +15,9 @@ namespace raycone {
 
 enum class ProgressMode { kAuto, kAlways, kNever };
 
-// Whether to show progress: on a terminal that is not already busy with the results, unless told otherwise.
-[[nodiscard]] bool progress_is_shown(ProgressMode mode, bool quiet, const std::string& output);
+// Whether to show progress: on a terminal that is not already busy with the results, unless told otherwise. `output`:
+// where these go, "-" for standard output.
+[[nodiscard]] bool progress_is_shown(ProgressMode mode, const std::string& output);
 
 // "1:05", "2:00:00"
 [[nodiscard]] std::string readable_time(double seconds);

@@ -9,11 +9,11 @@ namespace raycone {
 
 std::string InfoListing::entry(const MeshInfo& info, const CostedLattices& costed, int threads) {
   const bool first = !std::exchange(begun_, true);
-  switch (format_) {
+  switch (layout_.format) {
     case InfoFormat::kText:
       return (first ? "" : "\n") + info_text(info, costed, threads);
     case InfoFormat::kJson:
-      return several_ ? (first ? "[\n" : ",\n") + to_json_item(info) : to_json(info);
+      return layout_.several ? (first ? "[\n" : ",\n") + to_json_item(info) : to_json(info);
     case InfoFormat::kCsv:
       return (first ? csv_line(csv_names(info)) : "") + csv_line(csv_values(info));
   }
@@ -22,16 +22,17 @@ std::string InfoListing::entry(const MeshInfo& info, const CostedLattices& coste
 
 std::string InfoListing::entry(const VolumeInfo& info) {
   const bool first = !std::exchange(begun_, true);
-  if (format_ == InfoFormat::kJson) return several_ ? (first ? "[\n" : ",\n") + to_json_item(info) : to_json(info);
+  if (layout_.format == InfoFormat::kJson)
+    return layout_.several ? (first ? "[\n" : ",\n") + to_json_item(info) : to_json(info);
   return (first ? "" : "\n") + info_text(info);
 }
 
 std::string InfoListing::end() {
-  if (format_ == InfoFormat::kText || !several_) return "";
-  if (format_ == InfoFormat::kJson) return begun_ ? "\n]\n" : "[]\n";
+  if (layout_.format == InfoFormat::kText || !layout_.several) return "";
+  if (layout_.format == InfoFormat::kJson) return begun_ ? "\n]\n" : "[]\n";
   if (begun_) return "";
   MeshInfo none;  // for its columns
-  if (with_intersections_) none.intersections.emplace();
+  if (layout_.with_intersections) none.intersections.emplace();
   return csv_line(csv_names(none));
 }
 

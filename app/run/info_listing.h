@@ -13,9 +13,12 @@ namespace raycone {
 // theirs. CSV: a header line and one row a mesh.
 class InfoListing {
  public:
-  // `with_intersections`: self-intersections are counted, and have a column.
-  InfoListing(InfoFormat format, bool several, bool with_intersections)
-      : format_(format), several_(several), with_intersections_(with_intersections) {}
+  struct Layout {
+    InfoFormat format;
+    bool several;             // meshes
+    bool with_intersections;  // self-intersections are counted, and have a column
+  };
+  explicit InfoListing(const Layout& layout) : layout_(layout) {}
 
   // What is to be printed for the next mesh, and at the end.
   [[nodiscard]] std::string entry(const MeshInfo& info, const CostedLattices& costed, int threads);
@@ -24,9 +27,7 @@ class InfoListing {
   [[nodiscard]] std::string end();
 
  private:
-  InfoFormat format_;
-  bool several_;
-  bool with_intersections_;
+  Layout layout_;
   bool begun_ = false;
 };
 

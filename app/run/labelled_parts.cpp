@@ -83,9 +83,9 @@ void LabelledParts::warn_about_file() {
   turned_ = {};
 }
 
-void LabelledParts::found(bool inside, bool expected) {
+void LabelledParts::note_empty() {
   const bool is_slice = whole_ == WholeMesh::kShown;  // which may miss any part
-  if (!inside && expected && !is_slice) empty_.push_back(next_ - 1);
+  if (!is_slice) empty_.push_back(next_ - 1);
 }
 
 void LabelledParts::spent(const FieldEvaluator& evaluator) { terms_ += evaluator.winding_number().terms(); }

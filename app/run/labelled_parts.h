@@ -30,8 +30,8 @@ class LabelledParts {
 
   // The next one, from the first to the last.
   [[nodiscard]] MeshToEvaluate next();
-  // Whether a part has samples inside, and whether it should have some. In order.
-  void found(bool inside, bool expected);
+  // To be called of a part that has no samples inside, though it should have some; before next().
+  void note_empty();
   // What was spent on a part.
   void spent(const FieldEvaluator& evaluator);
   // What was counted at some of its samples.

@@ -124,7 +124,8 @@ LabelVolume label_lattice(LabelledParts& parts, const PlacedLattice& lattice, co
     MeshToEvaluate part = parts.next();
     if (field.verify > 0) timed(report.seconds.verify, [&] { check.add(part.mesh); });
     const bool expected = should_have_inside(bounding_box(part.mesh), lattice);
-    parts.found(labels.add(std::move(part), static_cast<std::int32_t>(n + 1)), expected);
+    const bool found = labels.add(std::move(part), static_cast<std::int32_t>(n + 1));
+    if (expected && !found) parts.note_empty();
   }
   LabelVolume volume = labels.take();
   parts.finish(volume.counts());

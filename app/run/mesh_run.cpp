@@ -98,7 +98,7 @@ void MeshRun::warn_of_points(const std::string& points, const std::vector<Warnin
 }
 
 std::atomic<std::uint64_t>* MeshRun::start_progress(std::optional<std::uint64_t> total) {
-  return progress_.emplace(progress_is_shown(options_.progress, options_.quiet, written_.path), total).done();
+  return progress_.emplace(progress_is_shown(options_.progress_mode(), written_.path), total).done();
 }
 
 void MeshRun::set_stage(const char* stage) {

@@ -73,7 +73,9 @@ class InfoRun {
   InfoRun(const InfoCommand& command, const RunLimits& limits)
       : command_(command),
         limits_(limits),
-        listing_(command.format, command.meshes.size() > 1, counts_intersections()),
+        listing_({.format = command.format,
+                  .several = command.meshes.size() > 1,
+                  .with_intersections = counts_intersections()}),
         output_("-") {
     if (command.mark) mark_.emplace(*command.mark, command.existing, &files_);
   }

@@ -54,6 +54,10 @@ double evaluation_memory(const Slice& slice, const FieldOptions& field, const Ru
   return slab_memory(whole(*slice.lattice), field, {.open = report.exterior_edges > 0});
 }
 
+PictureFrame frame_of(const SliceCommand& command) {
+  return command.framed ? PictureFrame::kAxesAndLegend : PictureFrame::kNone;
+}
+
 // Refuses pictures that cannot fit, before any work on them. Samples are gone when the picture is made.
 void check_slice_memory(const Slice& slice, const SliceCommand& command, const RunReport& report,
                         const RunLimits& limits) {
@@ -63,7 +67,7 @@ void check_slice_memory(const Slice& slice, const SliceCommand& command, const R
   }
   if (!slice.lattice) check_parts_memory(command.mesh, report.parts.size(), limits);
   const double values = static_cast<double>(report.samples) * sizeof(double);
-  const double picture = slice_picture_bytes(slice.view, command.framed);
+  const double picture = slice_picture_bytes(slice.view, frame_of(command));
   const double bytes = values + std::max(evaluation_memory(slice, command.field, report), picture);
   check_memory(command.mesh.path, bytes, limits.memory());
 }
@@ -222,7 +226,7 @@ RunReport run_slice(const SliceCommand& command, const RunLimits& limits) {
   timed(report.seconds.write, [&] {
     const std::vector<std::string> titles = titles_of(report, slice);
     const PictureValues shown{picture_field(command.field), values, cut.names, titles};
-    const Image picture = slice_picture(slice.view, shown, cut.mesh, command.framed);
+    const Image picture = slice_picture(slice.view, shown, cut.mesh, frame_of(command));
     write_picture(run.output, picture, report.mesh, described(command.field) + " at " + slice.plane);
     if (values_file) write_npy_rows(*values_file, slice.view.height, slice.view.width, values);
   });

@@ -9,6 +9,7 @@
 #include "core/data/lattice.h"
 #include "io/fields/array_elements.h"
 #include "io/fields/field_writer.h"
+#include "io/files/output_file.h"
 
 namespace raycone {
 
@@ -17,8 +18,8 @@ namespace raycone {
 
 // Across which axis such arrays take their slabs. Those across the slowest axis, x, can be appended, but cut all rays,
 // and each slab has to look for crossings again. Slabs across y are pieces of planes across x: long ones, as z is the
-// fastest axis.
-[[nodiscard]] int array_slab_axis(const Lattice& lattice, bool seekable);
+// fastest axis; only outputs that are seekable can take them.
+[[nodiscard]] int array_slab_axis(const Lattice& lattice, const OutputFile& output);
 
 class LatticeArray {
  public:

@@ -21,7 +21,7 @@ namespace {
 class NpyLatticeWriter final : public LatticeWriter {
  public:
   NpyLatticeWriter(OutputFile& output, const Lattice& lattice, const OutputDescription& description)
-      : output_(output), slab_axis_(array_slab_axis(lattice, output.seekable())) {
+      : output_(output), slab_axis_(array_slab_axis(lattice, output)) {
     auto elements = make_array_elements(description.fields.front(), description.precision.value_or(Precision::kSingle),
                                         output.name());
     const std::string head =

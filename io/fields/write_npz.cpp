@@ -103,7 +103,7 @@ std::vector<NpzArray> arrays_of(const PlacedLattice& lattice, bool packed) {
 class NpzLatticeWriter final : public LatticeWriter {
  public:
   NpzLatticeWriter(OutputFile& output, const PlacedLattice& lattice, const OutputDescription& description)
-      : slab_axis_(array_slab_axis(lattice.grid, output.seekable())) {
+      : slab_axis_(array_slab_axis(lattice.grid, output)) {
     const Precision precision = description.precision.value_or(Precision::kSingle);
     const auto samples = static_cast<std::uint64_t>(whole(lattice.grid).size());
     bool packed = false;

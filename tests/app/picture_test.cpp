@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -73,18 +72,18 @@ TEST(ColourMap, ReachesAsFarAsDistancesDo) {
   EXPECT_EQ(colours(1.7e308), ColourMap({.centre = 0.0})(-1.0)) << "inside is below";
 }
 
-Image picture_of(const PlaneView& view, bool framed) {
+Image picture_of(const PlaneView& view, PictureFrame frame) {
   const std::vector<double> values(static_cast<std::size_t>(view.width * view.height), 1.0);
-  return slice_picture(view, {PictureField::kWinding, values}, {}, framed);
+  return slice_picture(view, {PictureField::kWinding, values}, {}, frame);
 }
 
 TEST(FramedPicture, IsAsLongAsThePlainOne) {
   for (const auto& [width, height] : std::vector<std::pair<std::int64_t, std::int64_t>>{
            {320, 320}, {800, 321}, {333, 1200}, {1000, 1}, {1, 1000}, {2000, 2000}}) {
     const PlaneView view = view_of(width, height);
-    const Image page = picture_of(view, true);
+    const Image page = picture_of(view, PictureFrame::kAxesAndLegend);
     EXPECT_EQ(std::max(page.width(), page.height()), std::max(width, height)) << width << " x " << height;
-    const Image plain = picture_of(view, false);
+    const Image plain = picture_of(view, PictureFrame::kNone);
     EXPECT_EQ(plain.width(), width);
     EXPECT_EQ(plain.height(), height);
     const double page_bytes = static_cast<double>(page.pixels().size_bytes());
@@ -96,12 +95,12 @@ TEST(FramedPicture, OfTheLargestDistancesHasALegend) {
   PlaneView view = view_of(400, 400);
   std::vector<double> values(400 * 400);
   for (std::size_t n = 0; n < values.size(); ++n) values[n] = (n % 400 < 200 ? -1.0 : 1.0) * 1.7e308;
-  const Image page = slice_picture(view, {PictureField::kDistance, values}, {}, true);
+  const Image page = slice_picture(view, {PictureField::kDistance, values}, {}, PictureFrame::kAxesAndLegend);
   EXPECT_EQ(page.width(), 400);
 }
 
 TEST(FramedPicture, IsThePlainOneWhereThereIsNoRoom) {
-  const Image page = picture_of(view_of(kLeastFramedSize - 1, 200), true);
+  const Image page = picture_of(view_of(kLeastFramedSize - 1, 200), PictureFrame::kAxesAndLegend);
   EXPECT_EQ(page.width(), kLeastFramedSize - 1);
   EXPECT_EQ(page.height(), 200);
 }
@@ -109,8 +108,8 @@ TEST(FramedPicture, IsThePlainOneWhereThereIsNoRoom) {
 // The legend and the numbers lie beside the plot, never on it.
 TEST(FramedPicture, HasTheWholePlotInOneColour) {
   const PlaneView view = view_of(640, 640);
-  const Rgb colour = picture_of(view, false).at(0, 0);
-  const Image page = picture_of(view, true);
+  const Rgb colour = picture_of(view, PictureFrame::kNone).at(0, 0);
+  const Image page = picture_of(view, PictureFrame::kAxesAndLegend);
   std::int64_t left = page.width(), right = -1, top = page.height(), bottom = -1, count = 0;
   for (std::int64_t row = 0; row < page.height(); ++row) {
     for (std::int64_t column = 0; column < page.width() * 4 / 5; ++column) {  // the legend's bar has the colour, too
@@ -131,7 +130,7 @@ TEST(FramedPicture, HasTheFirstTitleThatThereIsRoomFor) {
   const PlaneView view = view_of(640, 480);
   const std::vector<double> values(640 * 480, 0.25);
   const auto with = [&](const std::vector<std::string>& titles) {
-    return slice_picture(view, {PictureField::kWinding, values, {}, titles}, {}, true);
+    return slice_picture(view, {PictureField::kWinding, values, {}, titles}, {}, PictureFrame::kAxesAndLegend);
   };
   const Image plain = with({}), titled = with({"teapot.obj, y = 0"});
   ASSERT_EQ(titled.width(), plain.width());
@@ -168,7 +167,7 @@ TEST(ShrunkImage, HasTheMeanOfWhatPixelsCover) {
 TEST(SlicePicture, OfDistancesIsRedInsideAndBlueOutside) {
   const PlaneView view = view_of(2, 1);
   const std::vector<double> values{-1.0, 1.0};
-  const Image image = slice_picture(view, {PictureField::kDistance, values}, {}, false);
+  const Image image = slice_picture(view, {PictureField::kDistance, values}, {}, PictureFrame::kNone);
   EXPECT_GT(image.at(0, 0).red, image.at(0, 0).blue);
   EXPECT_LT(image.at(1, 0).red, image.at(1, 0).blue);
 }
@@ -181,7 +180,7 @@ bool has_contours(double least, double most) {
   for (std::size_t n = 0; n < values.size(); ++n) {
     values[n] = least + (most - least) * static_cast<double>(n % 200) / 199.0;
   }
-  const Image image = slice_picture(view, {PictureField::kWinding, values}, {}, false);
+  const Image image = slice_picture(view, {PictureField::kWinding, values}, {}, PictureFrame::kNone);
   const ColourMap colours(colour_range(values));
   for (std::size_t n = 0; n < values.size(); ++n) {
     if (image.pixels()[n] != colours(values[n])) return true;
@@ -212,10 +211,10 @@ TEST(SlicePicture, OfLabelsHasALegendThatFits) {
     const PlaneView view = view_of(width, height);
     std::vector<double> values(static_cast<std::size_t>(width * height));
     for (std::size_t n = 0; n < values.size(); ++n) values[n] = static_cast<double>(n % 501);
-    const Image page = slice_picture(view, {PictureField::kLabel, values, names}, {}, true);
+    const Image page = slice_picture(view, {PictureField::kLabel, values, names}, {}, PictureFrame::kAxesAndLegend);
     EXPECT_EQ(std::max(page.width(), page.height()), std::max(width, height));
-    const Image few =
-        slice_picture(view, {PictureField::kLabel, std::vector<double>(values.size(), 7.0), names}, {}, true);
+    const Image few = slice_picture(view, {PictureField::kLabel, std::vector<double>(values.size(), 7.0), names}, {},
+                                    PictureFrame::kAxesAndLegend);
     EXPECT_LE(std::max(few.width(), few.height()), std::max(width, height));
   }
 }

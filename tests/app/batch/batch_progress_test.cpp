@@ -21,10 +21,10 @@ std::string written(BatchProgress::Style style, std::chrono::duration<double> be
     BatchProgress progress(style, 2, between_lines);
     progress.show();
     std::this_thread::sleep_for(pause);
-    progress.add(false, 0.5);
+    progress.add(MeshStatus::kOk, 0.5);
     progress.show();
     std::this_thread::sleep_for(pause);
-    progress.add(true, 1.0);
+    progress.add(MeshStatus::kInvalid, 1.0);
     progress.show();
   }
   return testing::internal::GetCapturedStderr();

@@ -23,11 +23,11 @@
 #include "core/filling/seen_by_nodes.h"
 #include "core/machine/floating_point.h"
 #include "core/merging/checked_merge.h"
-#include "core/merging/checked_simplify.h"
 #include "core/mesh/components.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/weld.h"
 #include "core/surface/face_sources.h"
+#include "core/surface/simplify_surface.h"
 #include "core/surface/surface_in_scale.h"
 #include "core/surface/surface_measures.h"
 
@@ -78,18 +78,13 @@ bool merge(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& insid
   return true;
 }
 
-// `most`: how far pulls may be, so that the surface moves by `options.simplify` at most.
+// By pulls of `most` at most.
 void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, double most,
               const SurfaceOptions& options) {
-  const bool had_holes = has_holes(made.surface);
-  made.bound_too_small = !(most > 0.0);
-  made.simplified = !made.bound_too_small && checked_simplify(made.surface, inside, most, options.rounds);
-  if (!made.simplified) return;
   const TriangleNormals normals(mesh);
   const DistanceEvaluator distance(mesh);
-  const SourceSettler settler(mesh, normals, distance, farthest_source(inside.lattice(), 0.0));
-  settler.settle(made.surface);
-  if (had_holes) settler.forget_far_sources(made.surface, options.simplify);
+  const SourceSettler settler(mesh, normals, distance, farthest_source(inside.lattice(), options.thickness));
+  simplify_surface(made, inside, most, options, settler);
 }
 
 // What there is to know of the mesh and the lattice.

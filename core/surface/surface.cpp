@@ -23,10 +23,10 @@
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
 #include "core/merging/checked_merge.h"
-#include "core/merging/checked_simplify.h"
 #include "core/sharpening/checked_sharpen.h"
 #include "core/sharpening/corner_gaps.h"
 #include "core/surface/face_sources.h"
+#include "core/surface/simplify_surface.h"
 #include "core/surface/surface_beside_nodes.h"
 #include "core/surface/surface_in_scale.h"
 #include "core/surface/thicken.h"
@@ -135,7 +135,7 @@ class SurfaceMaker {
                              merged_surface);
     if (!surface) return std::nullopt;
     FinishedSurface made{*std::move(surface)};
-    if (options_.simplify > 0.0) simplify_within_bound(made, margins);
+    if (options_.simplify > 0.0) simplify(made, margins);
     return made;
   }
 
@@ -181,7 +181,7 @@ class SurfaceMaker {
     if (options_.merge_planes && !made.merged && how.cells == ContourCells::kPolygons) return result;
     if (result.faults && !result.faults->none()) return result;
     if (!made.merged && !is_right(made.surface, places, result)) return result;
-    if (options_.simplify > 0.0) simplify_within_bound(made, margins);
+    if (options_.simplify > 0.0) simplify(made, margins);
     result.made = std::move(made);
     return result;
   }
@@ -224,15 +224,8 @@ class SurfaceMaker {
     return {margins.inner * inside_.lattice().largest_spacing(), tolerance_, options_.simplify};
   }
 
-  void simplify_within_bound(FinishedSurface& made, const SurfaceMargins& margins) {
-    const double most = bounds(margins).farthest_pull();
-    const bool had_holes = has_holes(made.surface);
-    made.bound_too_small = !(most > 0.0);
-    if (!made.bound_too_small) enter("simplifying");
-    made.simplified = !made.bound_too_small && checked_simplify(made.surface, inside_, most, options_.rounds);
-    if (!made.simplified) return;
-    settler_.settle(made.surface);
-    if (had_holes) settler_.forget_far_sources(made.surface, options_.thickness + options_.simplify);
+  void simplify(FinishedSurface& made, const SurfaceMargins& margins) const {
+    simplify_surface(made, inside_, bounds(margins).farthest_pull(), options_, settler_);
   }
 
   // The face points of cells with faces that intersect. Where faults are of other kinds, all of them. `attempt`: of

@@ -209,4 +209,23 @@ RoughCover rough_cover_in(const SourceTree& tree, std::span<const TriangleExtent
   return walk.finish();
 }
 
+CoverSums::CoverSums(const SourceTree& tree, const Cover& cover, const Box& samples, const CoverKernels& kernels)
+    : tree_(tree), cover_(cover), kernels_(kernels) {
+  triangles_.reserve(cover.triangles.size());
+  std::vector<std::uint32_t> large;
+  for (const std::uint32_t n : cover.triangles) {
+    const SolidTriangle& triangle = tree.triangles()[n];
+    if (looks_small_from(triangle, samples)) {
+      triangles_.push_back(triangle);
+    } else {
+      large.push_back(n);
+    }
+  }
+  const std::size_t small = triangles_.size();
+  for (const std::uint32_t n : large) triangles_.push_back(tree.triangles()[n]);
+  corners_ = SharedCorners(triangles_);
+  corners_.add_group(small, GroupLooks::kSmall);
+  corners_.add_group(triangles_.size() - small, GroupLooks::kAny);
+}
+
 }  // namespace raycone

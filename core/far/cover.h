@@ -72,25 +72,7 @@ struct CoverKernels {
 class CoverSums {
  public:
   // All samples must be within the box.
-  CoverSums(const SourceTree& tree, const Cover& cover, const Box& samples, const CoverKernels& kernels)
-      : tree_(tree), cover_(cover), kernels_(kernels) {
-    triangles_.reserve(cover.triangles.size());
-    std::vector<std::uint32_t> large;
-    for (const std::uint32_t n : cover.triangles) {
-      const SolidTriangle& triangle = tree.triangles()[n];
-      if (looks_small_from(triangle, samples)) {
-        triangles_.push_back(triangle);
-      } else {
-        large.push_back(n);
-      }
-    }
-    const std::size_t small = triangles_.size();
-    for (const std::uint32_t n : large) triangles_.push_back(tree.triangles()[n]);
-    corners_ = SharedCorners(triangles_);
-    corners_.add_group(small, GroupLooks::kSmall);
-    corners_.add_group(triangles_.size() - small, GroupLooks::kAny);
-  }
-
+  CoverSums(const SourceTree& tree, const Cover& cover, const Box& samples, const CoverKernels& kernels);
   CoverSums(const CoverSums&) = delete;  // corners_ refers to triangles_
 
   // Without the crossings of the triangles: these have the boundary `steps`, which is summed in their place.

@@ -18,8 +18,8 @@
 #include "core/distance/distance.h"
 #include "core/evaluation/winding_number.h"
 #include "core/machine/floating_point.h"
-#include "core/mesh/mesh_statistics.h"
 #include "core/surface/surface.h"
+#include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -27,6 +27,7 @@ namespace {
 
 using test::Random;
 using test::uniform;
+using test::volume_of;
 
 constexpr SurfaceMargins kMargins;
 
@@ -100,8 +101,6 @@ std::vector<double> areas(const SurfaceMesh& surface, std::size_t sources) {
   }
   return result;
 }
-
-double volume_of(const TriangleMesh& mesh) { return mesh_statistics(mesh).signed_volume.value_or(0.0); }
 
 // Sides of polygons that two cells share are the same, and so are those that they share with tetrahedra.
 TEST(CellPolygons, CloseUpToTheSameSolid) {

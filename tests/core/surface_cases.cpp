@@ -130,6 +130,13 @@ double largest_distance_of(const std::vector<Vec3>& points, const TriangleMesh& 
   return *std::ranges::max_element(distances);
 }
 
+double volume_of(const TriangleMesh& mesh) {
+  double volume = 0.0;
+  for (const auto& [a, b, c] : mesh.triangles)
+    volume += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c])) / 6.0;
+  return volume;
+}
+
 TriangleMesh part_of_sphere(int rings, const std::function<bool(const Vec3&)>& has) {
   TriangleMesh mesh = weld(test::sphere(rings), {});
   std::erase_if(mesh.triangles, [&](const Triangle& t) {

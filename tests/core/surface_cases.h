@@ -58,6 +58,9 @@ Made surface_of(const TriangleMesh& mesh, std::int64_t side, const SurfaceOption
 // Of the points from the mesh.
 double largest_distance_of(const std::vector<Vec3>& points, const TriangleMesh& mesh);
 
+// Signed, of a closed mesh.
+double volume_of(const TriangleMesh& mesh);
+
 // The faces of a sphere of so many rings whose middle is where `has` holds.
 TriangleMesh part_of_sphere(int rings, const std::function<bool(const Vec3&)>& has);
 // A sphere with a hole whose border goes up and down: where that is steep, its caps are in front of faces beside it.

@@ -17,6 +17,7 @@
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/components.h"
 #include "core/mesh/weld.h"
+#include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -131,13 +132,6 @@ TriangleMesh band(double z) {
   return mesh;
 }
 
-double volume_of(const TriangleMesh& mesh) {
-  double volume = 0.0;
-  for (const auto& [a, b, c] : mesh.triangles)
-    volume += dot(mesh.vertices[a], cross(mesh.vertices[b], mesh.vertices[c])) / 6.0;
-  return volume;
-}
-
 // All but one are, with a lid within the solid, or, of cavities, outside of it. The whole volume is that of both but
 // for a part of 2^-36.
 TEST(TakeApart, CutsCornersOffThatNoWayLeadsInto) {
@@ -153,7 +147,7 @@ TEST(TakeApart, CutsCornersOffThatNoWayLeadsInto) {
     EXPECT_TRUE(is_closed_and_embedded(taken.mesh));
     EXPECT_EQ(taken.mesh.triangles.size(), mesh.triangles.size() + 2 * 26 - 2);  // 26 edges, a lid of 24
     EXPECT_EQ(taken.sources.size(), taken.mesh.triangles.size());
-    EXPECT_NEAR(volume_of(taken.mesh), volume_of(mesh), 1e-9);
+    EXPECT_NEAR(test::volume_of(taken.mesh), test::volume_of(mesh), 1e-9);
   }
 }
 

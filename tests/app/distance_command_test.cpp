@@ -123,7 +123,7 @@ TEST_F(SdfField, IsALevelSetWhateverTheMesh) {
     }
     const CommandResult result = run_raycone(arguments);
     ASSERT_TRUE(result.status == 0 || result.status == 5) << result.err;  // some are broken on purpose
-    const std::string table = contents(dir_ / "out/results.csv");
+    const std::string table = read_text(dir_ / "out/results.csv");
     for (const std::string status : {",crashed,", ",memory,", ",timeout,"})
       EXPECT_EQ(table.find(status), std::string::npos) << table;
     for (const auto& output : std::filesystem::directory_iterator(dir_ / "out")) {
@@ -192,7 +192,7 @@ TEST_F(SdfField, AtPointsIsNotCutOff) {
 TEST_F(SdfField, BytesDependOnNeitherThreadsNorFormat) {
   const auto file = [&](const std::string& name, const std::string& threads) {
     EXPECT_EQ(lattice(soup_, dir_ / name, {"--field", "sdf", "--resolution", "30", "--threads", threads}).status, 0);
-    return contents(dir_ / name);
+    return read_text(dir_ / name);
   };
   EXPECT_EQ(file("out.vdb", "1"), file("out.vdb", "6"));
   EXPECT_EQ(file("out.npy", "1"), file("out.npy", "6"));

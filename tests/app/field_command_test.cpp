@@ -151,7 +151,7 @@ TEST_F(FieldOption, NumpySeesBooleansAndColumns) {
 TEST_F(FieldOption, BytesDoNotDependOnThreads) {
   const auto vdb = [&](const std::string& threads) {
     EXPECT_EQ(run(soup_, dir_ / "out.vdb", {"--field", "inside,density", "--threads", threads}).status, 0);
-    return contents(dir_ / "out.vdb");
+    return read_text(dir_ / "out.vdb");
   };
   EXPECT_EQ(vdb("1"), vdb("5"));
 }

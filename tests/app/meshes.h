@@ -1,11 +1,11 @@
 // Small meshes as text, for tests of the command line.
 #pragma once
 
-#include <fstream>
-#include <iterator>
 #include <random>
 #include <sstream>
 #include <string>
+
+#include "tests/support/text_files.h"
 
 namespace raycone::test {
 
@@ -39,15 +39,6 @@ inline std::string triangle_soup(int triangles) {
   }
   for (int i = 0; i < triangles; ++i) obj << "f " << 3 * i + 1 << ' ' << 3 * i + 2 << ' ' << 3 * i + 3 << '\n';
   return obj.str();
-}
-
-inline void write_text(const std::string& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-
-inline std::string read_text(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
 }
 
 }  // namespace raycone::test

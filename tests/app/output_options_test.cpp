@@ -109,7 +109,7 @@ TEST_F(GridOptions, VtiIsTheSameWhereverItGoes) {
   ASSERT_EQ(lattice(dir_ / "out.VTI", options).status, 0);
   std::vector<std::string> to_pipe = options;
   to_pipe.insert(to_pipe.end(), {"--format", "vti", "--threads", "3"});
-  EXPECT_EQ(lattice("-", to_pipe).out, contents(dir_ / "out.VTI"));
+  EXPECT_EQ(lattice("-", to_pipe).out, read_text(dir_ / "out.VTI"));
 }
 
 TEST_F(Depfile, ListsEveryFileThatWasRead) {

@@ -28,7 +28,7 @@ class SampleOption : public testing::Test {
     std::vector<std::string> arguments{"uniform=500,near=500:0.01", "-o", dir_ / "out.npz"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     EXPECT_EQ(sample(arguments).status, 0);
-    return contents(dir_ / "out.npz");
+    return read_text(dir_ / "out.npz");
   }
 
   TemporaryDirectory dir_;

@@ -290,7 +290,7 @@ TEST_F(Slice, ReportsBothOptionsUp) {
                    report})
                 .status,
             0);
-  const std::string text = contents(report);
+  const std::string text = read_text(report);
   EXPECT_NE(text.find("\"--up=1,0,0\""), std::string::npos) << text;
   EXPECT_NE(text.find("\"--up=y-to-z\""), std::string::npos) << text;
   EXPECT_EQ(text.find("\"--up=0,1,0\""), std::string::npos) << text;
@@ -332,7 +332,7 @@ TEST_F(Slice, ReportsThePreparationOfPointsAsSuch) {
   double largest = 0.0;  // a run may lose the processor while it evaluates
   for (int run = 0; run < 3; ++run) {
     ASSERT_EQ(slice({"--normal", "1,1,1", "--size", "8", "--report", report}).status, 0);
-    const nlohmann::json seconds = nlohmann::json::parse(contents(report))["seconds"];
+    const nlohmann::json seconds = nlohmann::json::parse(read_text(report))["seconds"];
     largest = std::max(largest, seconds["prepare"].get<double>() / seconds["evaluate"].get<double>());
   }
   EXPECT_GT(largest, 2.0);

@@ -54,11 +54,6 @@ double gap_between(const Box& a, const Box& b) {
   return gap;
 }
 
-double size_of(const Box& box) {
-  const Vec3 size = box.upper - box.lower;
-  return std::max({size.x, size.y, size.z});
-}
-
 TEST(CellSet, FindsBoxesThatMeetAndNoneThatAreFar) {
   Random random(1);
   int met = 0, far = 0;
@@ -74,7 +69,7 @@ TEST(CellSet, FindsBoxesThatMeetAndNoneThatAreFar) {
         if (gap_between(box, other) <= 0.0) {
           ASSERT_TRUE(meets) << side << " " << round;
           ++met;
-        } else if (gap_between(a, b) > 2.0 + std::max(size_of(a), size_of(b))) {
+        } else if (gap_between(a, b) > 2.0 + std::max(longest_side(a), longest_side(b))) {
           ASSERT_FALSE(meets) << side << " " << round;
           ++far;
         }

@@ -20,14 +20,15 @@
 #include "io/files/temporary_file.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 
 namespace raycone {
 namespace {
 
-using test::contents;
+using test::output_error_of;
+using test::read_text;
 using test::TemporaryDirectory;
-
-void put(const std::string& path, const std::string& text) { std::ofstream(path, std::ios::binary) << text; }
+using test::write_text;
 
 void write(OutputFile& output, const std::string& text) { output.write(text.data(), text.size()); }
 
@@ -43,18 +44,6 @@ mode_t mode_of(const std::string& path) {
   struct stat status {};
   EXPECT_EQ(stat(path.c_str(), &status), 0) << path;
   return status.st_mode & 07777;
-}
-
-// What the OutputError of `action` says; fails where there is none.
-template <typename Action>
-std::string error_of(const Action& action) {
-  try {
-    action();
-  } catch (const OutputError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no OutputError";
-  return {};
 }
 
 class Umask {
@@ -75,7 +64,7 @@ TEST(OutputFile, AppearsOnlyWhenCommitted) {
   output.flush();
   EXPECT_FALSE(std::filesystem::exists(directory / "out"));
   output.commit();
-  EXPECT_EQ(contents(directory / "out"), "hello");
+  EXPECT_EQ(read_text(directory / "out"), "hello");
   EXPECT_EQ(entries(directory).size(), 1U);
 }
 
@@ -92,12 +81,12 @@ TEST(OutputFile, LeavesNoDebrisWhenNotCommitted) {
 
 TEST(OutputFile, KeepsTheOldFileWhenNotCommitted) {
   const TemporaryDirectory directory;
-  put(directory / "out", "old");
+  write_text(directory / "out", "old");
   {
     OutputFile output(directory / "out");
     write(output, "new");
   }
-  EXPECT_EQ(contents(directory / "out"), "old");
+  EXPECT_EQ(read_text(directory / "out"), "old");
 }
 
 TEST(OutputGroup, FilesAppearTogether) {
@@ -112,8 +101,8 @@ TEST(OutputGroup, FilesAppearTogether) {
   second.commit();
   EXPECT_FALSE(std::filesystem::exists(directory / "second"));
   group.commit();
-  EXPECT_EQ(contents(directory / "first"), "1");
-  EXPECT_EQ(contents(directory / "second"), "2");
+  EXPECT_EQ(read_text(directory / "first"), "1");
+  EXPECT_EQ(read_text(directory / "second"), "2");
   EXPECT_EQ(entries(directory).size(), 2U);
 }
 
@@ -135,7 +124,7 @@ TEST(OutputGroup, TellsWhatItPutInPlace) {
 
 TEST(OutputGroup, NoneAppearsWhereOneFails) {
   const TemporaryDirectory directory;
-  put(directory / "first", "old");
+  write_text(directory / "first", "old");
   {
     OutputGroup group;
     OutputFile first(directory / "first", Existing::kReplaced, &group),
@@ -145,7 +134,7 @@ TEST(OutputGroup, NoneAppearsWhereOneFails) {
     write(second, "2");
     EXPECT_THROW(second.commit(), OutputError);
   }
-  EXPECT_EQ(contents(directory / "first"), "old");
+  EXPECT_EQ(read_text(directory / "first"), "old");
   EXPECT_EQ(entries(directory).size(), 1U);
 }
 
@@ -158,12 +147,12 @@ TEST(OutputGroup, FilesOutliveTheirWriters) {
     file.commit();
   }
   group.commit();
-  EXPECT_EQ(contents(directory / "out"), "hello");
+  EXPECT_EQ(read_text(directory / "out"), "hello");
 }
 
 TEST(OutputFile, RemoveTemporaryFilesRemovesThemOnly) {
   const TemporaryDirectory directory;
-  put(directory / "other", "kept");
+  write_text(directory / "other", "kept");
   OutputFile committed(directory / "committed");
   committed.commit();
   OutputFile first(directory / "first");
@@ -194,26 +183,26 @@ TEST(OutputFile, HasModeOfTheUmask) {
 TEST(OutputFile, HasModeOfTheFileItReplaces) {
   const TemporaryDirectory directory;
   const Umask mask(077);
-  put(directory / "out", "old");
+  write_text(directory / "out", "old");
   ASSERT_EQ(chmod((directory / "out").c_str(), 0664), 0);
   OutputFile output(directory / "out");
   write(output, "new");
   output.commit();
   EXPECT_EQ(mode_of(directory / "out"), 0664U);
-  EXPECT_EQ(contents(directory / "out"), "new");
+  EXPECT_EQ(read_text(directory / "out"), "new");
 }
 
 TEST(OutputFile, FollowsSymbolicLinks) {
   const TemporaryDirectory directory;
   std::filesystem::create_directory(directory / "real");
-  put(directory / "real/file", "old");
+  write_text(directory / "real/file", "old");
   std::filesystem::create_symlink("real/file", directory / "middle");
   std::filesystem::create_symlink(directory / "middle", directory / "link");
   OutputFile output(directory / "link");
   write(output, "new");
   output.commit();
   EXPECT_TRUE(std::filesystem::is_symlink(directory / "link"));
-  EXPECT_EQ(contents(directory / "real/file"), "new");
+  EXPECT_EQ(read_text(directory / "real/file"), "new");
 }
 
 TEST(OutputFile, CreatesTheTargetOfADanglingLink) {
@@ -223,13 +212,13 @@ TEST(OutputFile, CreatesTheTargetOfADanglingLink) {
   write(output, "new");
   output.commit();
   EXPECT_TRUE(std::filesystem::is_symlink(directory / "link"));
-  EXPECT_EQ(contents(directory / "missing"), "new");
+  EXPECT_EQ(read_text(directory / "missing"), "new");
 }
 
 TEST(OutputFile, RefusesALoopOfLinks) {
   const TemporaryDirectory directory;
   std::filesystem::create_symlink("loop", directory / "loop");
-  EXPECT_EQ(error_of([&] { OutputFile(directory / "loop"); }),
+  EXPECT_EQ(output_error_of([&] { OutputFile(directory / "loop"); }),
             directory / "loop" + ": cannot write: Too many levels of symbolic links");
 }
 
@@ -238,7 +227,7 @@ TEST(OutputFile, WritesToAFifoWithoutReplacingIt) {
   const std::string fifo = directory / "fifo";
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   std::string received;
-  std::thread reader([&] { received = contents(fifo); });
+  std::thread reader([&] { received = read_text(fifo); });
   {
     OutputFile output(fifo);
     EXPECT_FALSE(output.seekable());
@@ -303,7 +292,7 @@ TEST(OutputFile, WritesToAPipeOfAnyProcess) {
 // `raycone -o /dev/stdout >> log` must append to the log, not replace or truncate it.
 TEST(OutputFile, WritesToANamedDescriptorOfARegularFileWhereItStands) {
   const TemporaryDirectory directory;
-  put(directory / "log", "before ");
+  write_text(directory / "log", "before ");
   const int descriptor = open((directory / "log").c_str(), O_WRONLY | O_APPEND);
   ASSERT_GE(descriptor, 0);
   std::filesystem::create_symlink("/proc/self/fd/" + std::to_string(descriptor), directory / "link");
@@ -312,15 +301,15 @@ TEST(OutputFile, WritesToANamedDescriptorOfARegularFileWhereItStands) {
   write(output, "after");
   output.commit();
   close(descriptor);
-  EXPECT_EQ(contents(directory / "log"), "before after");
+  EXPECT_EQ(read_text(directory / "log"), "before after");
 }
 
 TEST(OutputFile, RefusesADescriptorThatIsNotOpenForWriting) {
   const int descriptor = open("/dev/null", O_RDONLY);
   const std::string name = "/dev/fd/" + std::to_string(descriptor);
-  EXPECT_EQ(error_of([&] { OutputFile{name}; }), name + ": cannot write: Bad file descriptor");
+  EXPECT_EQ(output_error_of([&] { OutputFile{name}; }), name + ": cannot write: Bad file descriptor");
   close(descriptor);
-  EXPECT_EQ(error_of([&] { OutputFile{name}; }), name + ": cannot write: Bad file descriptor");
+  EXPECT_EQ(output_error_of([&] { OutputFile{name}; }), name + ": cannot write: Bad file descriptor");
 }
 
 TEST(OutputFile, WritesToTheNullDeviceEvenWithNoClobber) {
@@ -333,20 +322,20 @@ TEST(OutputFile, WritesToTheNullDeviceEvenWithNoClobber) {
 TEST(OutputFile, ReportsAFullDisk) {
   OutputFile output("/dev/full");
   write(output, "buffered");
-  EXPECT_EQ(error_of([&] { output.commit(); }), "/dev/full: cannot write: No space left on device");
+  EXPECT_EQ(output_error_of([&] { output.commit(); }), "/dev/full: cannot write: No space left on device");
 }
 
 TEST(OutputFile, ReportsAFullDiskOnTheWayToo) {
   OutputFile output("/dev/full");
   const std::string much(std::size_t{3} << 20, 'x');
-  EXPECT_EQ(error_of([&] { write(output, much); }), "/dev/full: cannot write: No space left on device");
-  EXPECT_EQ(error_of([&] { write(output, "x"); }), "/dev/full: cannot write: No space left on device");
+  EXPECT_EQ(output_error_of([&] { write(output, much); }), "/dev/full: cannot write: No space left on device");
+  EXPECT_EQ(output_error_of([&] { write(output, "x"); }), "/dev/full: cannot write: No space left on device");
 }
 
 TEST(OutputFile, ReportsErrorsOfTheStreamInCommit) {
   OutputFile output("/dev/full");
   output.stream() << std::string(std::size_t{3} << 20, 'x');
-  EXPECT_EQ(error_of([&] { output.commit(); }), "/dev/full: cannot write: No space left on device");
+  EXPECT_EQ(output_error_of([&] { output.commit(); }), "/dev/full: cannot write: No space left on device");
 }
 
 TEST(OutputFile, ReportsAClosedPipeWhereTheSignalIsIgnored) {
@@ -358,7 +347,7 @@ TEST(OutputFile, ReportsAClosedPipeWhereTheSignalIsIgnored) {
   {
     OutputFile output(name);
     write(output, "hello");
-    EXPECT_EQ(error_of([&] { output.flush(); }), name + ": cannot write: Broken pipe");
+    EXPECT_EQ(output_error_of([&] { output.flush(); }), name + ": cannot write: Broken pipe");
   }
   close(ends[1]);
   std::signal(SIGPIPE, saved);
@@ -390,20 +379,20 @@ TEST(OutputFile, WaitsForAReaderWhereThePipeIsNonBlocking) {
 TEST(OutputFile, RefusesADirectory) {
   const TemporaryDirectory directory;
   const std::string name = directory.path().string();
-  EXPECT_EQ(error_of([&] { OutputFile{name}; }), name + ": is a directory");
+  EXPECT_EQ(output_error_of([&] { OutputFile{name}; }), name + ": is a directory");
 }
 
 TEST(OutputFile, NamesAMissingDirectory) {
   const TemporaryDirectory directory;
-  EXPECT_EQ(error_of([&] { OutputFile(directory / "missing/out"); }),
+  EXPECT_EQ(output_error_of([&] { OutputFile(directory / "missing/out"); }),
             directory / "missing/out" + ": cannot create a file in " + (directory / "missing") +
                 ": No such file or directory");
 }
 
 TEST(OutputFile, RefusesAFileUsedAsADirectory) {
   const TemporaryDirectory directory;
-  put(directory / "file", "");
-  EXPECT_EQ(error_of([&] { OutputFile(directory / "file/out"); }),
+  write_text(directory / "file", "");
+  EXPECT_EQ(output_error_of([&] { OutputFile(directory / "file/out"); }),
             directory / "file/out" + ": cannot write: Not a directory");
 }
 
@@ -411,7 +400,7 @@ TEST(OutputFile, RefusesADirectoryWithoutPermission) {
   if (geteuid() == 0) GTEST_SKIP() << "permissions do not bind root";
   const TemporaryDirectory directory;
   ASSERT_EQ(chmod(directory.path().c_str(), 0500), 0);
-  EXPECT_EQ(error_of([&] { OutputFile(directory / "out"); }),
+  EXPECT_EQ(output_error_of([&] { OutputFile(directory / "out"); }),
             directory / "out" + ": cannot create a file in " + directory.path().string() + ": Permission denied");
   ASSERT_EQ(chmod(directory.path().c_str(), 0700), 0);
 }
@@ -422,7 +411,7 @@ TEST(OutputFile, TakesTheLongestNames) {
   OutputFile output(directory / name);
   output.commit();
   EXPECT_EQ(entries(directory), std::vector<std::string>{name});
-  EXPECT_EQ(error_of([&] { OutputFile(directory / (name + 'n')); }),
+  EXPECT_EQ(output_error_of([&] { OutputFile(directory / (name + 'n')); }),
             directory / (name + 'n') + ": cannot write: File name too long");
 }
 
@@ -434,13 +423,13 @@ TEST(OutputFile, TakesNamesWithoutDirectory) {
   write(output, "hello");
   output.commit();
   std::filesystem::current_path(before);
-  EXPECT_EQ(contents(directory / "out"), "hello");
+  EXPECT_EQ(read_text(directory / "out"), "hello");
 }
 
 TEST(OutputFile, NoClobberRefusesAnExistingFileAtOnce) {
   const TemporaryDirectory directory;
-  put(directory / "out", "old");
-  EXPECT_EQ(error_of([&] { OutputFile(directory / "out", Existing::kKept); }),
+  write_text(directory / "out", "old");
+  EXPECT_EQ(output_error_of([&] { OutputFile(directory / "out", Existing::kKept); }),
             directory / "out" + ": already exists (--no-clobber)");
   EXPECT_EQ(entries(directory).size(), 1U);
 }
@@ -449,10 +438,10 @@ TEST(OutputFile, NoClobberDoesNotReplaceAFileThatAppearedMeanwhile) {
   const TemporaryDirectory directory;
   {
     OutputFile output(directory / "out", Existing::kKept);
-    put(directory / "out", "theirs");
-    EXPECT_EQ(error_of([&] { output.commit(); }), directory / "out" + ": already exists (--no-clobber)");
+    write_text(directory / "out", "theirs");
+    EXPECT_EQ(output_error_of([&] { output.commit(); }), directory / "out" + ": already exists (--no-clobber)");
   }
-  EXPECT_EQ(contents(directory / "out"), "theirs");
+  EXPECT_EQ(read_text(directory / "out"), "theirs");
   EXPECT_EQ(entries(directory).size(), 1U);
 }
 
@@ -465,7 +454,7 @@ TEST(OutputFile, OverwritesInPlaceAndGoesOnAtTheEnd) {
   output.overwrite(3, "lo", 1);
   write(output, "!");
   output.commit();
-  EXPECT_EQ(contents(directory / "out"), "Hell, world!");
+  EXPECT_EQ(read_text(directory / "out"), "Hell, world!");
 }
 
 TEST(OutputFile, StreamAndWriteShareOneBuffer) {
@@ -480,7 +469,7 @@ TEST(OutputFile, StreamAndWriteShareOneBuffer) {
   write(output, std::string(std::size_t{3} << 20, 'd'));  // more than the buffer holds
   EXPECT_EQ(output.stream().tellp(), 3 + (3 << 20));
   output.commit();
-  const std::string text = contents(directory / "out");
+  const std::string text = read_text(directory / "out");
   EXPECT_EQ(text.substr(0, 5), "aBcdd");
   EXPECT_EQ(text.size(), 3U + (std::size_t{3} << 20));
 }
@@ -490,10 +479,10 @@ TEST(OutputFile, ReservesRoomThatThereIsAndRefusesWhatThereIsNot) {
   OutputFile output(directory / "out");
   EXPECT_NO_THROW(output.reserve(1 << 20));
   write(output, "short");
-  const std::string message = error_of([&] { output.reserve(std::uint64_t{1} << 60); });
+  const std::string message = output_error_of([&] { output.reserve(std::uint64_t{1} << 60); });
   EXPECT_NE(message.find("No space left on device: needs 1 EB or more, "), std::string::npos) << message;
   output.commit();
-  EXPECT_EQ(contents(directory / "out"), "short") << "room that was reserved is no content";
+  EXPECT_EQ(read_text(directory / "out"), "short") << "room that was reserved is no content";
   struct stat status {};
   ASSERT_EQ(stat((directory / "out").c_str(), &status), 0);
   EXPECT_LT(status.st_blocks * 512, 1 << 19) << "and is given back";
@@ -511,7 +500,7 @@ TEST(SpoolFile, CopiesItsFinalBytes) {
   spool.stream() << "head";
   spool.copy_to(output);
   output.commit();
-  EXPECT_EQ(contents(directory / "out"), "head" + much);
+  EXPECT_EQ(read_text(directory / "out"), "head" + much);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@
 #include "core/data/triangle_mesh.h"
 #include "io/files/file_error.h"
 #include "io/mesh/read_mesh.h"
+#include "tests/support/glb.h"
 
 namespace raycone {
 namespace {
@@ -77,16 +78,6 @@ std::string compressed(const TriangleMesh& mesh, const Encoding& encoding, draco
   return {buffer.data(), buffer.size()};
 }
 
-std::string little_endian(std::uint32_t value) {
-  return {static_cast<char>(value & 255), static_cast<char>(value >> 8 & 255), static_cast<char>(value >> 16 & 255),
-          static_cast<char>(value >> 24)};
-}
-
-std::string chunk(const char* type, std::string data, char padding) {
-  while (data.size() % 4 != 0) data += padding;
-  return little_endian(static_cast<std::uint32_t>(data.size())) + std::string(type, 4) + data;
-}
-
 // The parts of a document that a test replaces.
 struct Asset {
   std::size_t vertices = 0;
@@ -120,8 +111,7 @@ std::string glb(const Asset& asset, const std::string& draco, const std::string&
                            std::to_string(asset.vertices) + R"(},{"componentType":5125,"type":"SCALAR","count":)" +
                            std::to_string(asset.corners) + R"(}],"meshes":[{"primitives":[)" + primitives +
                            R"(]}],"nodes":[{"mesh":0}]})";
-  const std::string chunks = chunk("JSON", json, ' ') + chunk("BIN\0", binary, '\0');
-  return "glTF" + little_endian(2) + little_endian(static_cast<std::uint32_t>(12 + chunks.size())) + chunks;
+  return test::glb(json, binary);
 }
 
 // The bytes in an allocation of their size, so that the address sanitizer sees any read behind its end.

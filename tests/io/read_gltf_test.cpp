@@ -19,28 +19,19 @@
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
 #include "io/mesh/read_mesh.h"
+#include "tests/support/glb.h"
 #include "tests/support/temporary_directory.h"
 
 namespace raycone {
 namespace {
 
+using test::glb;
+using test::little_endian;
 using test::TemporaryDirectory;
 
 template <class Number>
 std::string bytes_of(const std::vector<Number>& numbers) {
   return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)};
-}
-
-std::string little_endian(std::uint32_t value) { return bytes_of<std::uint32_t>({value}); }
-
-std::string chunk(const char* type, std::string data, char padding) {
-  while (data.size() % 4 != 0) data += padding;
-  return little_endian(static_cast<std::uint32_t>(data.size())) + std::string(type, 4) + data;
-}
-
-std::string glb(const std::string& json, const std::string& binary) {
-  const std::string chunks = chunk("JSON", json, ' ') + (binary.empty() ? "" : chunk("BIN\0", binary, '\0'));
-  return "glTF" + little_endian(2) + little_endian(static_cast<std::uint32_t>(12 + chunks.size())) + chunks;
 }
 
 std::string base64(const std::string& bytes) {

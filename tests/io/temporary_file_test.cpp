@@ -17,11 +17,12 @@
 #include "io/files/output_file.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 
 namespace raycone {
 namespace {
 
-using test::contents;
+using test::read_text;
 using test::TemporaryDirectory;
 
 std::set<std::string> names_in(const TemporaryDirectory& directory) {
@@ -127,7 +128,7 @@ TEST(RemoveAbandonedFiles, NeverDisturbsWritersThatStart) {
   }
   done = true;
   remover.join();
-  EXPECT_EQ(contents(directory / "out"), "299");
+  EXPECT_EQ(read_text(directory / "out"), "299");
   EXPECT_EQ(names_in(directory), std::set<std::string>{"out"});
 }
 

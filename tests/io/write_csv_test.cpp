@@ -13,11 +13,12 @@
 #include "io/fields/field_writer.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 
 namespace raycone {
 namespace {
 
-using test::contents;
+using test::read_text;
 using test::TemporaryDirectory;
 
 std::string points_csv(const std::vector<Vec3>& points, const std::vector<double>& values) {
@@ -27,7 +28,7 @@ std::string points_csv(const std::vector<Vec3>& points, const std::vector<double
   const FieldValues field = std::span(values);
   writer->write(points, {&field, 1});
   writer->finish();
-  return contents(directory / "out.csv");
+  return read_text(directory / "out.csv");
 }
 
 std::string lattice_csv(const Lattice& lattice, const std::vector<double>& values, const std::string& column) {
@@ -36,7 +37,7 @@ std::string lattice_csv(const Lattice& lattice, const std::vector<double>& value
   OutputDescription description;
   description.fields.front().column = column;
   test::write_in_slabs(FieldFormat::kCsv, output, lattice, description, values, 1);
-  return contents(directory / "out.csv");
+  return read_text(directory / "out.csv");
 }
 
 TEST(WriteCsv, PrintsPointsInOrderAsShortestText) {
@@ -115,7 +116,7 @@ TEST(WriteCsv, HasAColumnPerFieldInTheirOrder) {
   const std::vector<double> w{1, 0.25};
   writer->write(std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}, std::vector<FieldValues>{std::span(inside), std::span(w)});
   writer->finish();
-  EXPECT_EQ(contents(directory / "out.csv"), "x,y,z,inside,w\n1,2,3,1,1\n4,5,6,0,0.25\n");
+  EXPECT_EQ(read_text(directory / "out.csv"), "x,y,z,inside,w\n1,2,3,1,1\n4,5,6,0,0.25\n");
 }
 
 TEST(WriteCsv, HasRoomForTheLongestRows) {
@@ -137,7 +138,7 @@ TEST(WriteCsv, PrintsDiagnosticsBehindTheValuesOfPoints) {
   const std::vector<double> values{0.5, -1};
   writer->write(std::vector<Vec3>{{1, 2, 3}, {4, 5, 6}}, test::FourDiagnostics().from(0, values));
   writer->finish();
-  EXPECT_EQ(contents(directory / "out.csv"),
+  EXPECT_EQ(read_text(directory / "out.csv"),
             "x,y,z,w,crossings,degenerate,on_surface,error_bound\n"
             "1,2,3,0.5,0,0,0,5e-324\n"
             "4,5,6,-1,-3,2,1,0.1\n");
@@ -153,7 +154,7 @@ TEST(WriteCsv, PrintsDiagnosticsOfLatticesSampleBySample) {
   writer->write({{0, 0, 0}, {2, 1, 1}}, diagnostics.from(0, lower));
   writer->write({{0, 0, 1}, {2, 1, 1}}, diagnostics.from(2, upper));
   writer->finish({});
-  EXPECT_EQ(contents(directory / "out.csv"),
+  EXPECT_EQ(read_text(directory / "out.csv"),
             "i,j,k,x,y,z,w,crossings,degenerate,on_surface,error_bound\n"
             "0,0,0,0,0,0,1,0,0,0,5e-324\n"
             "1,0,0,1,0,0,2,-3,2,1,0.1\n"
@@ -174,7 +175,7 @@ TEST(WriteCsv, HasRoomForTheLongestRowsWithDiagnostics) {
                                          std::span<const std::int64_t>(counts), std::span<const std::uint8_t>(flags),
                                          std::span<const double>(bounds)});
   writer->finish();
-  const std::string text = contents(directory / "out.csv");
+  const std::string text = read_text(directory / "out.csv");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3001);
   EXPECT_TRUE(text.ends_with(",-9223372036854775808,-9223372036854775808,1,2.2250738585072014e-308\n"));
 }

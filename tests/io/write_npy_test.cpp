@@ -12,11 +12,12 @@
 #include "io/fields/field_writer.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 
 namespace raycone {
 namespace {
 
-using test::contents;
+using test::read_text;
 using test::TemporaryDirectory;
 
 std::string header_text(const std::string& npy) { return npy.substr(10, npy.find('\n') - 10); }
@@ -50,7 +51,7 @@ std::string lattice_npy(const Lattice& lattice, const std::vector<double>& value
   OutputDescription description;
   if (double_precision) description.precision = Precision::kDouble;
   test::write_in_slabs(FieldFormat::kNpy, output, lattice, description, values, thickness);
-  return contents(directory / "out.npy");
+  return read_text(directory / "out.npy");
 }
 
 TEST(WriteNpy, HeaderIsVersion1PaddedTo64Bytes) {
@@ -70,7 +71,7 @@ TEST(WriteNpy, HalvesStayOnTheSideOfTheThreshold) {
   description.precision = Precision::kHalf;
   const Lattice lattice = lattice_of(1, 1, 6);
   test::write_in_slabs(FieldFormat::kNpy, output, lattice, description, values, 1);
-  const std::string npy = contents(directory / "out.npy");
+  const std::string npy = read_text(directory / "out.npy");
   EXPECT_TRUE(header_text(npy).starts_with("{'descr': '<f2'"));
   // 1/2, the half below it, minus the half below it, 1, 65504, 0
   const std::vector<std::uint16_t> expected{0x3800, 0x37FF, 0xB7FF, 0x3C00, 0x7BFF, 0};
@@ -151,7 +152,7 @@ void write_points(const std::string& name, const std::vector<double>& values, bo
 std::string points_npy(const std::vector<double>& values, bool announce) {
   const TemporaryDirectory directory;
   write_points(directory / "out.npy", values, announce);
-  return contents(directory / "out.npy");
+  return read_text(directory / "out.npy");
 }
 
 std::string points_npy_through_pipe(const std::vector<double>& values, bool announce) {
@@ -210,7 +211,7 @@ TEST(WriteNpy, PointsWithDiagnosticsAreRowsOfFive) {
       writer->write(std::vector<Vec3>(2), of.from(n, std::span(values).subspan(n, 2)));
     }
     writer->finish();
-    const std::string npy = contents(directory / "out.npy");
+    const std::string npy = read_text(directory / "out.npy");
     EXPECT_NE(header_text(npy).find("'shape': (" + std::to_string(count) + ", 5), }"), std::string::npos);
     std::vector<double> expected;
     for (std::size_t n = 0; n < count; ++n) {
@@ -235,7 +236,7 @@ TEST(WriteNpy, LatticesOfFlagsAreBooleans) {
   const FieldValues field = std::span(flags);
   writer->write(whole(lattice_of(2, 1, 2)), {&field, 1});
   writer->finish({});
-  const std::string npy = contents(directory / "out.npy");
+  const std::string npy = read_text(directory / "out.npy");
   EXPECT_TRUE(header_text(npy).starts_with("{'descr': '|b1', 'fortran_order': False, 'shape': (2, 1, 2), }"));
   EXPECT_EQ(npy.substr(header_size(npy)), std::string("\1\0\0\1", 4));
 }

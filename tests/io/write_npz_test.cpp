@@ -10,11 +10,12 @@
 #include "io/files/zip_writer.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 
 namespace raycone {
 namespace {
 
-using test::contents;
+using test::read_text;
 using test::TemporaryDirectory;
 
 std::string zip_of(const std::string& first, const std::string& second, std::uint64_t zip64_from) {
@@ -26,7 +27,7 @@ std::string zip_of(const std::string& first, const std::string& second, std::uin
     if (begin == 0) zip.append(1, second.data(), second.size());
   }
   zip.finish();
-  return contents(directory / "out.zip");
+  return read_text(directory / "out.zip");
 }
 
 TEST(ZipWriter, PythonReadsArchivesOfBothForms) {
@@ -116,7 +117,7 @@ TEST(WriteNpz, IsTheSameOnAPipe) {
   std::string received(65536, '\0');
   received.resize(static_cast<std::size_t>(read(ends[0], received.data(), received.size())));
   close(ends[0]);
-  EXPECT_EQ(received, contents(directory / "out.npz"));
+  EXPECT_EQ(received, read_text(directory / "out.npz"));
 }
 
 }  // namespace

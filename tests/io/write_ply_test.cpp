@@ -8,11 +8,12 @@
 #include "io/mesh/read_mesh.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 
 namespace raycone {
 namespace {
 
-using test::contents;
+using test::read_text;
 using test::TemporaryDirectory;
 
 ColouredMesh example() {
@@ -26,7 +27,7 @@ ColouredMesh example() {
 std::string written(const ColouredMesh& mesh, const std::string& path) {
   OutputFile output(path);
   write_ply(output, mesh);
-  return contents(path);
+  return read_text(path);
 }
 
 TEST(WritePly, KeepsPositionsAndFaces) {

@@ -10,6 +10,7 @@
 #include "io/fields/field_writer.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 
 namespace raycone {
 namespace {
@@ -30,7 +31,7 @@ TEST(WriteRaw, FloatsAreBoundsOfTheErrorStill) {
                   std::vector<FieldValues>{std::span(std::as_const(w)), std::span(std::as_const(bounds))});
     writer->finish();
   }
-  const std::string bytes = test::contents(directory / "out");
+  const std::string bytes = test::read_text(directory / "out");
   std::vector<float> stored(200);
   ASSERT_EQ(bytes.size(), stored.size() * sizeof(float));
   std::memcpy(stored.data(), bytes.data(), bytes.size());

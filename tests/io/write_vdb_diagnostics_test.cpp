@@ -13,12 +13,13 @@
 #include "io/vdb/read_vdb.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 #include "tests/support/vdb_files.h"
 
 namespace raycone {
 namespace {
 
-using test::contents;
+using test::read_text;
 using test::read_vdb_grids, test::VdbGrid, test::VdbGridPtr, test::VdbType;
 using test::TemporaryDirectory;
 
@@ -159,7 +160,7 @@ TEST(WriteVdbDiagnostics, DependNotOnTheSlabs) {
   write_vdb(directory / "aligned", diagnosed_field(), 44);
   for (const std::int64_t thickness : {1, 3, 8, 13}) {
     write_vdb(directory / "other", diagnosed_field(), thickness);
-    EXPECT_EQ(contents(directory / "other"), contents(directory / "aligned")) << thickness;
+    EXPECT_EQ(read_text(directory / "other"), read_text(directory / "aligned")) << thickness;
   }
 }
 

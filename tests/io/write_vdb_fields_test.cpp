@@ -15,12 +15,13 @@
 #include "io/files/half.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 #include "tests/support/vdb_files.h"
 
 namespace raycone {
 namespace {
 
-using test::contents;
+using test::read_text;
 using test::read_vdb_grid, test::VdbClass, test::VdbGridPtr, test::VdbType, test::VoxelIndex;
 using test::TemporaryDirectory;
 
@@ -152,7 +153,7 @@ TEST(WriteVdbFields, BlocksOfDistancesMakeTheSameFile) {
         }
         writer->finish({});
       }
-      EXPECT_EQ(contents(directory / "blocks.vdb"), contents(directory / "numbers.vdb"));
+      EXPECT_EQ(read_text(directory / "blocks.vdb"), read_text(directory / "numbers.vdb"));
     }
   }
 }

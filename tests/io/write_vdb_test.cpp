@@ -20,12 +20,14 @@
 #include "io/vdb/read_vdb.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 #include "tests/support/vdb_files.h"
 
 namespace raycone {
 namespace {
 
-using test::contents;
+using test::output_error_of;
+using test::read_text;
 using test::TemporaryDirectory;
 using test::VdbClass, test::VdbGrid, test::VdbGridPtr, test::VdbGridToWrite, test::VdbTransform, test::VdbType;
 using test::VoxelIndex, test::read_vdb_grid, test::write_vdb_grids;
@@ -110,17 +112,6 @@ void expect_holds(const VdbGrid& grid, const Field& field) {
   EXPECT_EQ(grid.active_voxel_count(), active);
 }
 
-template <typename Action>
-std::string output_error_of(const Action& action) {
-  try {
-    action();
-  } catch (const OutputError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no OutputError";
-  return {};
-}
-
 TEST(WriteVdb, HoldsEveryVoxel) { expect_holds(*written_grid(random_field()), random_field()); }
 
 TEST(WriteVdb, HoldsEveryVoxelBesideTiles) { expect_holds(*written_grid(ball_field()), ball_field()); }
@@ -141,7 +132,7 @@ TEST(WriteVdb, DoesNotDependOnTheSlabs) {
   write_vdb(directory / "aligned", ball_field(), described_mesh(), 66);
   for (const std::int64_t thickness : {1, 3, 8, 13}) {
     write_vdb(directory / "other", ball_field(), described_mesh(), thickness);
-    EXPECT_EQ(contents(directory / "other"), contents(directory / "aligned")) << thickness;
+    EXPECT_EQ(read_text(directory / "other"), read_text(directory / "aligned")) << thickness;
   }
 }
 
@@ -239,7 +230,7 @@ TEST(WriteVdb, IsByteIdenticalOnEveryRun) {
   write_vdb(first / "out.vdb", ball_field());
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   write_vdb(second / "out.vdb", ball_field());
-  EXPECT_EQ(contents(first / "out.vdb"), contents(second / "out.vdb"));
+  EXPECT_EQ(read_text(first / "out.vdb"), read_text(second / "out.vdb"));
 }
 
 TEST(WriteVdb, IsByteIdenticalForAnyNumberOfThreads) {
@@ -248,8 +239,8 @@ TEST(WriteVdb, IsByteIdenticalForAnyNumberOfThreads) {
     const ThreadLimit limit(threads);
     write_vdb(directory / std::to_string(threads), ball_field());
   }
-  EXPECT_EQ(contents(directory / "1"), contents(directory / "2"));
-  EXPECT_EQ(contents(directory / "1"), contents(directory / "7"));
+  EXPECT_EQ(read_text(directory / "1"), read_text(directory / "2"));
+  EXPECT_EQ(read_text(directory / "1"), read_text(directory / "7"));
 }
 
 std::string identifier_in(const std::string& vdb) { return vdb.substr(21, 36); }
@@ -260,8 +251,8 @@ TEST(WriteVdb, IdentifierFollowsTheContent) {
   write_vdb(directory / "one", field);
   field.values[field.values.size() / 2] += 0.5;
   write_vdb(directory / "other", field);
-  const std::string identifier = identifier_in(contents(directory / "one"));
-  EXPECT_NE(identifier, identifier_in(contents(directory / "other")));
+  const std::string identifier = identifier_in(read_text(directory / "one"));
+  EXPECT_NE(identifier, identifier_in(read_text(directory / "other")));
   for (std::size_t n = 0; n < identifier.size(); ++n) {
     const bool hyphen = n == 8 || n == 13 || n == 18 || n == 23;
     EXPECT_TRUE(hyphen ? identifier[n] == '-' : std::isxdigit(identifier[n]) != 0) << identifier;
@@ -284,7 +275,7 @@ TEST(WriteVdb, IsTheSameThroughAPipe) {
   close(ends[1]);
   reader.join();
   close(ends[0]);
-  EXPECT_EQ(received, contents(directory / "file"));
+  EXPECT_EQ(received, read_text(directory / "file"));
 }
 
 TEST(WriteVdb, ReportsAFullDisk) {
@@ -531,7 +522,7 @@ TEST(ReadVdbLattice, SurvivesTruncatedFiles) {
   const TemporaryDirectory directory;
   const Field field = field_of({9, 9, 9}, [](auto x, auto y, auto z) { return static_cast<double>(x + y + z); });
   write_vdb(directory / "whole", field);
-  const std::string whole = contents(directory / "whole");
+  const std::string whole = read_text(directory / "whole");
   for (std::size_t size = 0; size < whole.size(); size += 61) {
     const std::string cut = directory / std::to_string(size);
     std::ofstream(cut, std::ios::binary) << whole.substr(0, size);

@@ -8,11 +8,12 @@
 #include "io/files/file_error.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 
 namespace raycone {
 namespace {
 
-using test::contents;
+using test::read_text;
 using test::TemporaryDirectory;
 
 // Reads the arrays of a file as VTK does: each where the head says, behind its size.
@@ -117,7 +118,7 @@ TEST(WriteVti, IsTheSameOnAPipe) {
   std::string received(65536, '\0');
   received.resize(static_cast<std::size_t>(read(ends[0], received.data(), received.size())));
   close(ends[0]);
-  EXPECT_EQ(received, contents(directory / "out.vti"));
+  EXPECT_EQ(received, read_text(directory / "out.vti"));
 }
 
 TEST(WriteVti, RefusesIndicesThatVtkCannotHold) {

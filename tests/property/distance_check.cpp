@@ -16,12 +16,10 @@
 namespace raycone::test {
 namespace {
 
-double largest_of(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
-
 double largest_coordinate(const TriangleMesh& mesh) {
   double largest = 0;
   for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t v : t) largest = std::max(largest, largest_of(mesh.vertices[v]));
+    for (const std::uint32_t v : t) largest = std::max(largest, largest_coordinate(mesh.vertices[v]));
   }
   return largest;
 }
@@ -111,7 +109,7 @@ std::optional<Failure> check_distances(const TriangleMesh& mesh, const std::vect
   for (std::size_t n = 0; n < points.size(); ++n) {
     const Quad exact = direct_distance(mesh, points[n]);
     const Quad difference = distances[n] > exact ? distances[n] - exact : exact - distances[n];
-    const Quad largest = std::max(largest_coordinate(mesh), largest_of(points[n]));
+    const Quad largest = std::max(largest_coordinate(mesh), largest_coordinate(points[n]));
     // What is not a normal number is rounded to a multiple of the least one.
     const Quad allowed = std::max(Quad(1e-12) * exact, 4 * Quad(0x1p-53) * largest);
     ++counts.points;

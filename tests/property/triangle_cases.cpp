@@ -79,15 +79,16 @@ void flatten(std::array<Vec3, 3>& corners, Random& random) {
   for (Vec3& corner : corners) corner[axis] = corners[0][axis];
 }
 
-double largest_of(const Vec3& p) { return std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}); }
-
 double largest_of(const std::array<Vec3, 3>& corners) {
-  return std::max({largest_of(corners[0]), largest_of(corners[1]), largest_of(corners[2])});
+  return std::max({raycone::largest_coordinate(corners[0]), raycone::largest_coordinate(corners[1]),
+                   raycone::largest_coordinate(corners[2])});
 }
 
 }  // namespace
 
-double TriangleCase::largest_coordinate() const { return std::max(largest_of(corners), largest_of(query)); }
+double TriangleCase::largest_coordinate() const {
+  return std::max(largest_of(corners), raycone::largest_coordinate(query));
+}
 
 int triangle_family_count() { return 6; }
 

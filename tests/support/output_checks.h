@@ -1,21 +1,29 @@
-// What the tests of writers share: files as text, and checks by other programs' readers.
+// What the tests of writers share: errors, diagnostics, slabs, and checks by other programs' readers.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "io/fields/field_writer.h"
+#include "io/files/file_error.h"
 #include "tests/support/run_command.h"
 
 namespace raycone::test {
 
-inline std::string contents(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+// What the OutputError of `action` says; fails where there is none.
+template <typename Action>
+std::string output_error_of(const Action& action) {
+  try {
+    action();
+  } catch (const OutputError& error) {
+    return error.what();
+  }
+  ADD_FAILURE() << "no OutputError";
+  return {};
 }
 
 // A value and its diagnostics, as the application describes them.

@@ -1,16 +1,13 @@
 // Which fields of a table are coordinates, and what is between them.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
+
+#include "io/points/column_names.h"
 
 namespace raycone {
-
-using Columns = std::array<std::size_t, 3>;  // of x, y and z, from 0
 
 struct TableLayout {
   char delimiter = ' ';
@@ -18,11 +15,6 @@ struct TableLayout {
   std::string fault{};  // why the header does not fit the line; empty where it does
   std::string doubt{};  // that the header leaves open which columns are meant; empty where it does not
 };
-
-[[nodiscard]] std::vector<std::string_view> fields_of(std::string_view line, char delimiter);
-
-// The columns that a header names as coordinates.
-[[nodiscard]] std::optional<Columns> named_columns(const std::vector<std::string_view>& names);
 
 // Whether the first line of a table is a header: whichever of tab, semicolon, comma and blanks is between its fields,
 // the coordinates are not numbers; whichever of those that it has, none of them looks like one, and one is a name. So

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
 #include "app/command_line/value_candidates.h"
@@ -43,8 +44,7 @@ std::string up_to_equals(std::string_view value) {
   return std::string(value.substr(0, equals == std::string_view::npos ? equals : equals + 1));
 }
 
-}  // namespace
-
+// The one of `words` that `misspelt` is most like, the first of several.
 std::optional<std::string> nearest_word(const std::string& misspelt, const std::vector<std::string>& words) {
   constexpr std::size_t kShortest = 3;
   const std::string given = lower_case(without_dashes(misspelt));
@@ -61,6 +61,8 @@ std::optional<std::string> nearest_word(const std::string& misspelt, const std::
   }
   return nearest;
 }
+
+}  // namespace
 
 std::string suggestion(const std::string& misspelt, const std::vector<std::string>& words) {
   const std::optional<std::string> word = nearest_word(misspelt, words);

@@ -35,8 +35,7 @@ char32_t code_of(std::string_view character) {
   return code;
 }
 
-}  // namespace
-
+// The UTF-8 character at the start of `text`, which is not empty; empty where there is none, but other bytes.
 std::string_view first_character(std::string_view text) {
   const std::size_t length = length_from(static_cast<unsigned char>(text[0]));
   if (length == 0 || length > text.size()) return {};
@@ -44,12 +43,16 @@ std::string_view first_character(std::string_view text) {
   return length == 1 || is_character(character) ? character : std::string_view();
 }
 
+// Whether `character` is none that a terminal or page would obey in place of showing it: the controls of ASCII and
+// Latin-1, and what breaks lines or turns the direction of writing.
 bool is_shown(std::string_view character) {
   const char32_t code = code_of(character);
   const auto within = [code](char32_t first, char32_t last) { return first <= code && code <= last; };
   return !within(0, 0x1F) && !within(0x7F, 0x9F) && code != 0x61C && !within(0x200E, 0x200F) &&
          !within(0x2028, 0x202E) && !within(0x2066, 0x2069);
 }
+
+}  // namespace
 
 std::string valid_utf8(std::string_view text) {
   std::string valid;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <stdexcept>
 
 #include "io/files/ascii.h"
 
 namespace raycone {
+namespace {
 
 std::span<const FormatTraits> all_formats() {
   using enum FieldFormat;
@@ -27,6 +29,8 @@ std::span<const FormatTraits> all_formats() {
   };
   return kFormats;
 }
+
+}  // namespace
 
 const FormatTraits& traits_of(FieldFormat format) {
   const std::span<const FormatTraits> formats = all_formats();

@@ -50,11 +50,9 @@ struct FormatTraits {
   [[nodiscard]] bool holds(Content content) const { return (contents & content) != 0; }
 };
 
-// Messages and help list formats in this order.
-[[nodiscard]] std::span<const FormatTraits> all_formats();
 [[nodiscard]] const FormatTraits& traits_of(FieldFormat format);
 
-// Of those with a name.
+// Of those with a name, in the order of messages and help.
 [[nodiscard]] std::vector<FieldFormat> formats_that_hold(FormatTraits::Content content);
 [[nodiscard]] std::vector<std::string> names_of(std::span<const FieldFormat> formats);
 

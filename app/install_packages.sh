@@ -1,7 +1,8 @@
 #!/bin/sh
 # Installs the Debian packages that raycone needs, where some are missing:
 #   sh app/install_packages.sh [--tests | --tidy]
-# --tests adds what the tests and benchmarks need, --tidy what tests/tidy.sh does. Without apt (not Debian, not Ubuntu) it only says what to install.
+# --tests adds what the tests and benchmarks need, --tidy what tests/tidy.sh does. Without apt (not Debian, not Ubuntu)
+# it only says what to install.
 set -eu
 
 # libboost-iostreams-dev: CMake's find module of Debian's OpenVDB asks for it, the package does not depend on it.

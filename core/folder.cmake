@@ -5,7 +5,8 @@
 # makes two targets:
 #   core_exact_headers  gives its users the include path of this folder and of the folders that it SEES
 #   core_exact          the object files of SOURCES, compiled with just that path; USES are the libraries they need
-# The include path is a directory of the build that holds nothing but a link to the folder, under the folder's full name.
+# The include path is a directory of the build that holds nothing but a link to the folder, under the folder's full
+# name.
 function(raycone_folder folder)
   cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SEES;SOURCES;USES")
   string(REPLACE / _ name ${folder})

@@ -1,7 +1,8 @@
 #!/bin/sh
 # Checks what the build cannot (docs/architecture.md): sh tests/check_layers.sh [SOURCE-DIRECTORY]
 # Each third-party library has its files, oracles share no code with what they judge, no include steps out of the
-# include paths by "..", and no two types of headers have one name. That folders include only what lies below them is the build's job: core/folder.cmake.
+# include paths by "..", and no two types of headers have one name. That folders include only what lies below them is
+# the build's job: core/folder.cmake.
 set -eu
 cd "${1:-$(dirname "$0")/..}"
 

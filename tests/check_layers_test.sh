@@ -1,5 +1,6 @@
 #!/bin/sh
-# Third-party libraries keep to their files, and tests/check_layers.sh notices each kind of violation when one is planted in a copy.
+# Third-party libraries keep to their files, and tests/check_layers.sh notices each kind of violation when one is
+# planted in a copy.
 set -eu
 root=$(cd "$(dirname "$0")/.." && pwd)
 sh "$root/tests/check_layers.sh" "$root"

@@ -1,5 +1,6 @@
 #!/bin/sh
-# Fails where a test was skipped without one of the reasons known here: sh tests/check_skipped.sh CTEST-LOG BUILD-DIRECTORY
+# Fails where a test was skipped without one of the reasons known here:
+#   sh tests/check_skipped.sh CTEST-LOG BUILD-DIRECTORY
 # A test that finds its data or its tools missing would otherwise pass for ever.
 set -eu
 log=$1

@@ -1,7 +1,7 @@
 #!/bin/sh
 # raycone's files in the programs they are for: sh tests/clients.sh
-# Installs Blender, ParaView, pyopenvdb and numpy where they are missing, as root, and runs tests/clients/clients_test.py, of
-# which nothing may then be skipped. Needs the dev build.
+# Installs Blender, ParaView, pyopenvdb and numpy where they are missing, as root, and runs
+# tests/clients/clients_test.py, of which nothing may then be skipped. Needs the dev build.
 set -eu
 cd "$(dirname "$0")/.."
 packages='blender python3-paraview python3-openvdb python3-numpy'

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""The sign of a distance is the side that `--field inside` says, at every sample: on all shared meshes that load, in the
-band and beyond it, by two rules. python3 tests/distance_signs_test.py RAYCONE MESHES [RESOLUTION]
+"""The sign of a distance is the side that `--field inside` says, at every sample: on all shared meshes that load, in
+the band and beyond it, by two rules. python3 tests/distance_signs_test.py RAYCONE MESHES [RESOLUTION]
 
 Samples whose distance is zero have no side. Exit status 77 where the meshes are absent.
 """

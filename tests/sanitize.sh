@@ -1,9 +1,9 @@
 #!/bin/sh
 # The executable under sanitizers, behind tests/run.sh: sh tests/sanitize.sh [asan-ubsan] [tsan]
 # Without arguments both; continuous integration takes the first alone.
-# The dev build's black-box tests drive an executable built with AddressSanitizer and UndefinedBehaviorSanitizer, and one
-# with ThreadSanitizer, so that the tests need not be compiled again; the former also takes the fuzz corpora, the hostile
-# files, the faults, the random command lines, the damaged meshes and solids that are cut. The whole suite under
+# The dev build's black-box tests drive an executable built with AddressSanitizer and UndefinedBehaviorSanitizer, and
+# one with ThreadSanitizer, so that the tests need not be compiled again; the former also takes the fuzz corpora, the
+# hostile files, the faults, the random command lines, the damaged meshes and solids that are cut. The whole suite under
 # sanitizers takes an hour: docs/developing.md.
 set -eu
 cd "$(dirname "$0")/.."
@@ -39,8 +39,8 @@ black_box() {
 sh app/install_packages.sh --tests
 phase "build dev" cmake --build --preset dev --parallel "$jobs" --target raycone_tests raycone_vdb_tests
 
-# GCC 12's sanitizers take a loaded module's thread-local storage for that of an older C library where it happens to begin
-# 16 bytes behind a page's start, and die of the addresses that they read there: they need not look.
+# GCC 12's sanitizers take a loaded module's thread-local storage for that of an older C library where it happens to
+# begin 16 bytes behind a page's start, and die of the addresses that they read there: they need not look.
 tls=intercept_tls_get_addr=0
 
 asan_ubsan() {

@@ -50,7 +50,8 @@ def bits_of(number):
 
 
 def as_float(value):
-    """The nearest float; but a half-integer, where rules decide, stands only for what reaches it (io/fields/narrowing.h)."""
+    """The nearest float; but a half-integer, where rules decide, stands only for what reaches it
+    (io/fields/narrowing.h)."""
     nearest = struct.unpack("f", struct.pack("f", value))[0]
     if abs(nearest) % 1 != 0.5 or nearest == value or 0 < nearest < value:
         return nearest

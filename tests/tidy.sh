@@ -30,7 +30,8 @@ for command in json.load(open("build/tidy/compile_commands.json")):
     if file.removeprefix("build/tidy/").startswith(tuple(folder + "/" for folder in sys.argv[1:])):
         print(file)' "$@")
 
-# tidy_all FILE...: notes in build/tidy.tsv how long each took. The headers behind all others: <quadmath.h> is GCC's own.
+# tidy_all FILE...: notes in build/tidy.tsv how long each took. The headers behind all others: <quadmath.h> is GCC's
+# own.
 rm -f build/tidy.tsv
 export checks warnings gcc_headers="$(g++ -print-file-name=include)"
 tidy_all() {

@@ -1,7 +1,7 @@
 #!/bin/sh
-# Compares the evaluator with the oracle on every mesh that loads in ../shared/meshes (or in the directory given), and writes
-# docs/accuracy.md: sh tests/accuracy/run.sh [DIRECTORY]. Takes some minutes. --quick: a tenth of the samples of the meshes
-# below 10 000 faces, to standard output only; exit status 77 where the meshes are absent.
+# Compares the evaluator with the oracle on every mesh that loads in ../shared/meshes (or in the directory given), and
+# writes docs/accuracy.md: sh tests/accuracy/run.sh [DIRECTORY]. Takes some minutes. --quick: a tenth of the samples of
+# the meshes below 10 000 faces, to standard output only; exit status 77 where the meshes are absent.
 set -eu
 cd "$(dirname "$0")/../.."
 quick=

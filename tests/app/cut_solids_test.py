@@ -1,4 +1,5 @@
-"""raycone surface of closed meshes that pass through themselves: python3 cut_solids_test.py RAYCONE MESH_DIRECTORY [--long|--quick]
+"""raycone surface of closed meshes that pass through themselves: python3 cut_solids_test.py RAYCONE MESH_DIRECTORY
+[--long|--quick]
 
 Boxes between whole numbers, of either orientation, share sides, parts of sides, edges and corners in every way. The
 oracle: a unit cell is inside where the rule holds of the sum of the boxes around it, so volumes are whole numbers of
@@ -102,8 +103,8 @@ class CutSolids(CommandCase):
 
     @but_quick
     def test_samples_on_sides(self):
-        # Where parts touch next to a sample on their sides they move against the perturbation. Rarely a sample is on the
-        # wrong side then, and a contour is made: of one in a hundred and fifty (3 of 464).
+        # Where parts touch next to a sample on their sides they move against the perturbation. Rarely a sample is on
+        # the wrong side then, and a contour is made: of one in a hundred and fifty (3 of 464).
         solids, contours = 0, 0
         for seed in (1, 5):
             for words, expected in self.solids(seed, 12, lambda p: p):

@@ -107,7 +107,8 @@ def near_limits(mesh, out, count):
 
 
 def check_bytes_near_limits(mesh, out):
-    """Whatever a limit is, a run that says that it succeeded has written all: where memory ends while the file is written, too."""
+    """Whatever a limit is, a run that says that it succeeded has written all: where memory ends while the file is
+    written, too."""
     words = ["lattice", mesh, "-o", out + ".vdb", "--field", "sdf", "--resolution", "160"]
 
     def contents():

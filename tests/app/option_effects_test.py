@@ -270,7 +270,8 @@ OPTIONS = {command: options_in_help(command) for command in commands_in_help()}
 
 
 def without_metadata(content):
-    """VDB: names and types of grids, and what follows each transform. Metadata has the options, whether or not these have an effect."""
+    """VDB: names and types of grids, and what follows each transform. Metadata has the options, whether or not these
+    have an effect."""
     kinds = re.findall(rb"([ -~]+.{4}Tree_\w+)", content, re.S)
     grids = [content[match.start() :] for match in re.finditer(rb"[A-Za-z]+Map", content)]
     return kinds, [grid.split(b"raycone_")[0] for grid in grids]

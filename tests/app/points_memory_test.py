@@ -13,8 +13,8 @@ import unittest
 
 RAYCONE, MESH = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
 ALLOWED_BYTES = 4 << 20  # what the allocator keeps or not as it happens; 900 000 points as numbers would be 21.6 MB
-# 262 144 points and their values. Of many points so many come at once where raycone waits for a CPU while awk writes; the
-# few may have come in smaller batches.
+# 262 144 points and their values. Of many points so many come at once where raycone waits for a CPU while awk writes;
+# the few may have come in smaller batches.
 BATCH_BYTES = 8 << 20
 FROM_AWK = """awk -v n="$1" 'BEGIN { for (i = 0; i < n; i++) printf "%.3f %.3f %.3f\\n", i % 7 / 5, i % 11 / 9, i % 13 / 11 }' |
 "$2" points "$3" - -o - --report "$4" --quiet | wc -l"""

@@ -1,4 +1,5 @@
-"""What Blender sees of volumes and meshes, as one line of JSON: blender -b --factory-startup -noaudio -P blender_import.py -- FILE...
+"""What Blender sees of volumes and meshes, as one line of JSON: blender -b --factory-startup -noaudio -P
+blender_import.py -- FILE...
 
 Of each file its bounding box in the world, by the importers and their defaults that users get from the menu; of a .vdb
 the names of its grids too, of a .ply how many corners of faces have which colour.

@@ -1,4 +1,5 @@
-"""Files in the programs they are for: /usr/bin/python3 clients_test.py RAYCONE MESHES [Blender|Numpy|ParaView|Pyopenvdb]
+"""Files in the programs they are for: /usr/bin/python3 clients_test.py RAYCONE MESHES
+[Blender|Numpy|ParaView|Pyopenvdb]
 
 Each client opens what raycone wrote; what it then sees is compared with the CSV and the report of the same job. That the
 comparison can fail is seen on another mesh's file. Exit status 77 where a client is not installed, which is printed.

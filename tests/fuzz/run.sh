@@ -1,7 +1,8 @@
 #!/bin/sh
 # Fuzzes with clang: sh tests/fuzz/run.sh [--at-least SECONDS] [--quiet-for SECONDS] [TARGET...]
-# Each target (default: all) for at least 1200 seconds and until it has reached no new edge for 300. What it finds stays in
-# build/fuzz/corpus/TARGET, from which the next run goes on. Prints the row of docs/robustness.md; fails on a finding.
+# Each target (default: all) for at least 1200 seconds and until it has reached no new edge for 300. What it finds stays
+# in build/fuzz/corpus/TARGET, from which the next run goes on. Prints the row of docs/robustness.md; fails on a
+# finding.
 set -eu
 cd "$(dirname "$0")/../.."
 

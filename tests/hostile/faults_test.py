@@ -44,8 +44,8 @@ def sweep_memory(run, kind, of_what, size, step):
         fail(run.name + ": memory never ran out within the program", 0, b"")
 
 
-# After any time from start to end; the run dies of the signal unless it was faster. On a machine that others use, too, the
-# first run may have taken far longer than those that follow.
+# After any time from start to end; the run dies of the signal unless it was faster. On a machine that others use, too,
+# the first run may have taken far longer than those that follow.
 def sweep_signals(run, count):
     start = time.monotonic()
     run.start().communicate()
@@ -139,7 +139,8 @@ def check_rows(directory, names, status, message):
         fail("%s: not all outputs of rows that are ok: %s" % (directory, made), status, message)
 
 
-# Processes that load OpenVDB at once take threads from each other. Root has as many as it likes, so another user runs this.
+# Processes that load OpenVDB at once take threads from each other. Root has as many as it likes, so another user runs
+# this.
 def batch_with_few_threads(count):
     def few_threads(threads=12):
         os.setsid()

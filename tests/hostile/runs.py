@@ -1,4 +1,5 @@
-"""Runs of raycone that are disturbed, and what must hold then, for the tests beside this file: TEST RAYCONE MESH_DIRECTORY."""
+"""Runs of raycone that are disturbed, and what must hold then, for the tests beside this file: TEST RAYCONE
+MESH_DIRECTORY."""
 
 import hashlib
 import json
@@ -50,8 +51,8 @@ class Run:
         self.before = set(os.listdir())
         return subprocess.Popen([*tracer, *self.arguments], stderr=subprocess.PIPE, **options)
 
-    # `done`: whether the run said that it was. Of several outputs some may have been completed before a fault; an output
-    # whose directory cannot be synced has its name already (`may_be_renamed`).
+    # `done`: whether the run said that it was. Of several outputs some may have been completed before a fault; an
+    # output whose directory cannot be synced has its name already (`may_be_renamed`).
     def check(self, what, status, message, done, may_be_renamed=False):
         debris = set(os.listdir()) - self.before
         if debris:
@@ -65,8 +66,8 @@ class Run:
     def is_told(self, message):
         return message.startswith(b"raycone: ") and message.count(b"\n") == 1
 
-    # It died of the signal, or was faster. A signal between the renaming and the end finds the output complete, and perhaps
-    # the summary printed.
+    # It died of the signal, or was faster. A signal between the renaming and the end finds the output complete, and
+    # perhaps the summary printed.
     def check_signal(self, what, kind, status, message):
         done = self.is_complete(self.outputs[0])
         if status not in (0, -kind) or (message and not done):

@@ -71,7 +71,8 @@ def may_trace():
 
 
 # The numbers of the calls of each kind in the thread of `run` that makes most of them, but for those that its dynamic
-# linker makes before. Of close(2) only those of outputs: strace makes no call that it lets fail, and a pipe must be closed.
+# linker makes before. Of close(2) only those of outputs: strace makes no call that it lets fail, and a pipe must be
+# closed.
 def numbers_of_calls(run):
     run.start(["strace", "-f", "-qq", "-y", "-o", "strace.log"]).communicate(timeout=300)
     counts, linker, numbers = collections.Counter(), None, collections.defaultdict(list)

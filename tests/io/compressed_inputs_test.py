@@ -199,7 +199,8 @@ class Compressed(unittest.TestCase):
             self.assertEqual(self.works("points t.obj -", input=packed), self.works("points t.obj p.csv"), packed_name)
 
     def test_deflated_members_end_where_a_piece_of_them_does(self):
-        """64 KiB of XML are unpacked at a time, 128 of arrays; the byte that ends the data holds the last match, too."""
+        """64 KiB of XML are unpacked at a time, 128 of arrays; the byte that ends the data holds the last match,
+        too."""
         for n in range(5458, 5475):
             path = self.write("p.npz", npz(zipfile.ZIP_DEFLATED, npy([(0.0, 0.0, 0.0)] * n)))
             self.assertEqual(self.works("points t.obj " + path).count(b"\n"), n + 1)
@@ -220,7 +221,8 @@ class Compressed(unittest.TestCase):
         self.assertGreater(tried, 0)
 
     def test_answers_come_as_soon_as_their_points_have(self):
-        """256 KiB are read at a time. They end within the last block here, behind which nothing comes before the answers."""
+        """256 KiB are read at a time. They end within the last block here, behind which nothing comes before the
+        answers."""
         first, last = b"0.1 0.2 0.3\n", b"1 1 1\n"
         frame = bytes.fromhex("28b52ffd0038")  # a window of 128 KiB
         for size, kind, block in ((len(first), 0, first), (1 << 17, 1, b"\n"), ((1 << 17) - 15, 1, b"\n"), (len(last), 0, last)):

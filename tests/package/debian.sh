@@ -1,7 +1,7 @@
 #!/bin/sh
 # The Debian package on a bare Debian 12, as root: sh tests/package/debian.sh
-# Makes the package, lets lintian judge it (apt-get install lintian debootstrap), installs it into a new system of a folder
-# by the commands of the Apptainer definition file, and uses it there. Needs the network for Debian's packages.
+# Makes the package, lets lintian judge it (apt-get install lintian debootstrap), installs it into a new system of a
+# folder by the commands of the Apptainer definition file, and uses it there. Needs the network for Debian's packages.
 set -eu
 cd "$(dirname "$0")/../.."
 work=$(mktemp -d)

@@ -28,7 +28,8 @@ def jumps(values):
 
 
 def colours(values, voxel):
-    """Blue outside, red inside, darker lines every four voxels, black at 0; the first axis goes right, the second up."""
+    """Blue outside, red inside, darker lines every four voxels, black at 0; the first axis goes right, the second
+    up."""
     bands = 0.75 + 0.25 * (abs(values) / (4 * voxel) % 1 > 0.2)
     image = numpy.where((values < 0)[..., None], (235, 110, 90), (110, 150, 235)) * bands[..., None]
     image[abs(values) < 0.5 * voxel] = 0

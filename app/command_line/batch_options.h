@@ -8,6 +8,6 @@
 namespace raycone {
 
 [[nodiscard]] CommandSpec batch_spec();
-[[nodiscard]] Command parse_batch(const Values& values);
+[[nodiscard]] Command parse_batch(const Values& values);  // throws UsageError
 
 }  // namespace raycone

@@ -8,6 +8,6 @@
 namespace raycone {
 
 [[nodiscard]] CommandSpec info_spec();
-[[nodiscard]] Command parse_info(const Values& values);
+[[nodiscard]] Command parse_info(const Values& values);  // throws UsageError
 
 }  // namespace raycone

@@ -12,9 +12,10 @@
 namespace raycone {
 
 [[nodiscard]] CommandSpec lattice_spec();
-[[nodiscard]] Command parse_lattice(const Values& values);
+[[nodiscard]] Command parse_lattice(const Values& values);  // throws UsageError
 
 [[nodiscard]] OptionGroup lattice_group();
+// The parts of it; all throw UsageError.
 [[nodiscard]] std::variant<LatticeRequest, GridReference> parse_lattice_request(const Values& values);
 [[nodiscard]] Box parse_bounds(const std::string& text);
 [[nodiscard]] std::variant<WorldPadding, VoxelPadding> parse_padding(const std::string& text);

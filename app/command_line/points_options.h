@@ -8,6 +8,6 @@
 namespace raycone {
 
 [[nodiscard]] CommandSpec points_spec();
-[[nodiscard]] Command parse_points(const Values& values);
+[[nodiscard]] Command parse_points(const Values& values);  // throws UsageError
 
 }  // namespace raycone

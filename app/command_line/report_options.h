@@ -8,6 +8,6 @@
 namespace raycone {
 
 [[nodiscard]] CommandSpec report_spec();
-[[nodiscard]] Command parse_report(const Values& values);
+[[nodiscard]] Command parse_report(const Values& values);  // throws UsageError
 
 }  // namespace raycone

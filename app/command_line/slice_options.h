@@ -8,6 +8,6 @@
 namespace raycone {
 
 [[nodiscard]] CommandSpec slice_spec();
-[[nodiscard]] Command parse_slice(const Values& values);
+[[nodiscard]] Command parse_slice(const Values& values);  // throws UsageError
 
 }  // namespace raycone

@@ -8,6 +8,6 @@
 namespace raycone {
 
 [[nodiscard]] CommandSpec surface_spec();
-[[nodiscard]] Command parse_surface(const Values& values);
+[[nodiscard]] Command parse_surface(const Values& values);  // throws UsageError
 
 }  // namespace raycone

@@ -22,6 +22,7 @@ namespace raycone {
 class ChangeBound {
  public:
   // Of a mesh in scale: coordinates of at most 1, lest squares overflow. Uses the threads that ThreadLimit allows.
+  // Throws std::length_error for more than 2^32 - 1 pieces of edges and caps.
   explicit ChangeBound(const Caps& caps, SimdLevel level = SimdLevel::kBest);
 
   // The length of the gradient in the closed box is at most this, turns per unit. Infinite where the box comes too

@@ -49,7 +49,8 @@ class SourceTree {
   };
 
   // Triangles of a mesh in scale: coordinates of at most 1. Nodes that are accepted as square_of_distance says err by
-  // at most `tolerance` turns (positive) together, whichever they are. Deterministic, also for every level.
+  // at most `tolerance` turns (positive) together, whichever they are. Deterministic, also for every level. Throws
+  // std::length_error for more than 2^32 - 1 triangles.
   SourceTree(std::vector<SolidTriangle> triangles, double tolerance, SimdLevel level, Detail detail);
 
   [[nodiscard]] std::span<const SourceNode> nodes() const { return nodes_; }  // first the root, if any

@@ -8,7 +8,8 @@
 
 namespace raycone {
 
-// Writes a float64 array of shape (rows, columns), C order, and commits. Precondition: values.size() is their product.
+// Writes a float64 array of shape (rows, columns), C order, and commits. Throws OutputError. Precondition:
+// values.size() is their product.
 void write_npy_rows(OutputFile& output, std::int64_t rows, std::int64_t columns, std::span<const double> values);
 
 }  // namespace raycone

@@ -1,7 +1,6 @@
 #include "core/far/lattice_blocks_walk.h"
 
 #include <algorithm>
-#include <iterator>
 #include <limits>
 #include <numeric>
 #include <utility>

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <tuple>
 
 #include "core/cells/surface_mesh.h"

@@ -2,7 +2,6 @@
 #include <array>
 #include <bit>
 #include <cstddef>
-#include <cstring>
 #include <memory>
 #include <optional>
 #include <string>

@@ -2,12 +2,9 @@
 // executable.
 #include <gtest/gtest.h>
 
-#include <cstring>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include "tests/app/meshes.h"
 #include "tests/support/run_command.h"

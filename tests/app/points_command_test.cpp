@@ -1,7 +1,6 @@
 // `raycone points` from points to values. Black box: the real executable.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -9,7 +8,6 @@
 #include <sstream>
 #include <string>
 #include <thread>
-#include <vector>
 
 #include "tests/app/meshes.h"
 #include "tests/support/run_command.h"

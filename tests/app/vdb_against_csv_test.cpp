@@ -2,7 +2,6 @@
 // CSV.
 #include <gtest/gtest.h>
 
-#include <charconv>
 #include <fstream>
 #include <sstream>
 #include <string>

@@ -2,10 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "core/arrangement/arranged_patches.h"
 #include "core/machine/threads.h"

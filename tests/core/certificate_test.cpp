@@ -7,7 +7,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <random>
 #include <vector>
 
 #include "core/cells/surface_cells.h"

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
-#include <random>
 #include <vector>
 
 #include "core/cells/surface_cells.h"

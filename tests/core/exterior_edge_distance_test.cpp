@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/weld.h"

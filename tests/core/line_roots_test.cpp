@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <optional>
-#include <vector>
 
 #include "core/evaluation/winding_number.h"
 #include "core/exact/direct_sum.h"

@@ -2,15 +2,12 @@
 // its part of the building must not take a part that waits for the whole.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <functional>
 #include <mutex>
 #include <new>
 #include <stdexcept>

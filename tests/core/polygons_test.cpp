@@ -11,7 +11,6 @@
 #include <cmath>
 #include <ctime>
 #include <map>
-#include <numeric>
 #include <utility>
 
 #include "core/exact/projection.h"

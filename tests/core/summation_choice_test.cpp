@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cstddef>
-
 #include "tests/support/shapes.h"
 
 namespace raycone {

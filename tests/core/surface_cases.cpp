@@ -9,7 +9,6 @@
 #include <functional>
 #include <map>
 #include <numbers>
-#include <random>
 #include <span>
 #include <utility>
 #include <vector>

@@ -15,7 +15,6 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <random>
 #include <utility>
 #include <vector>
 

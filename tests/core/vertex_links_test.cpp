@@ -12,7 +12,6 @@
 #include <map>
 #include <random>
 #include <utility>
-#include <vector>
 
 #include "core/mesh/components.h"
 #include "core/mesh/exterior_edges.h"

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "core/exact/predicates.h"
 #include "core/machine/threads.h"

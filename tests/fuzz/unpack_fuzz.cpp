@@ -2,7 +2,6 @@
 // InputError.
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <string_view>
 
 #include "io/files/file_error.h"

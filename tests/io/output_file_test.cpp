@@ -9,7 +9,6 @@
 #include <climits>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <vector>

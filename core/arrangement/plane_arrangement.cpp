@@ -4,8 +4,11 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <span>
 #include <tuple>
+#include <utility>
+#include <vector>
 
 #include "core/arrangement/plane_triangulation.h"
 #include "core/data/vec3.h"
@@ -180,38 +183,45 @@ class FacesOfGroup {
   std::vector<Extent> boxes_;
 };
 
-}  // namespace
-
-std::optional<std::vector<PlanePiece>> cut(const PlaneGroup& group, ExactPoints& points, Effort& effort) {
-  const int axis = points.axis_to_see(group.faces.front().corners);
+// Of all corners and crossings of the segments, each of which is a chain of edges. None if that takes too long.
+std::optional<PlaneTriangulation> triangulated(const PlaneGroup& group, int axis, ExactPoints& points, Effort& effort) {
   const std::vector<Segment> segments = all_segments(group);
   const std::optional<std::vector<Number>> crossings = Crossings(segments, axis, points).find(effort);
   if (!crossings) return std::nullopt;
   std::vector<Number> corners = group.points;
   corners.insert(corners.end(), crossings->begin(), crossings->end());
   for (const auto& [from, to] : segments) corners.insert(corners.end(), {from, to});
-  PlaneTriangulation triangulation(points, axis, effort);
+  std::optional<PlaneTriangulation> triangulation(std::in_place, points, axis, effort);
   for (const Number corner : corners) {
-    if (!triangulation.insert(corner)) return std::nullopt;
+    if (!triangulation->insert(corner)) return std::nullopt;
   }
   for (const auto& [from, to] : segments) {
-    if (!triangulation.connect(from, to)) return std::nullopt;
+    if (!triangulation->connect(from, to)) return std::nullopt;
   }
-  triangulation.make_delaunay();
+  triangulation->make_delaunay();
+  return triangulation;
+}
+
+}  // namespace
+
+std::optional<std::vector<PlanePiece>> cut(const PlaneGroup& group, ExactPoints& points, Effort& effort) {
+  const int axis = points.axis_to_see(group.faces.front().corners);
+  std::optional<PlaneTriangulation> triangulation = triangulated(group, axis, points, effort);
+  if (!triangulation) return std::nullopt;
   EdgeCounts counts;
   for (const PlaneGroup::Face& face : group.faces) {
     for (std::size_t i = 0; i < 3; ++i) {
-      counts.add(*triangulation.connect(face.corners[i], face.corners[(i + 1) % 3]));
+      counts.add(*triangulation->connect(face.corners[i], face.corners[(i + 1) % 3]));
     }
   }
-  const std::vector<int> multiplicity = multiplicities(triangulation, counts);
+  const std::vector<int> multiplicity = multiplicities(*triangulation, counts);
   const FacesOfGroup group_faces(group, axis, points);
   std::vector<PlanePiece> pieces;
   for (std::size_t n = 0; n < multiplicity.size(); ++n) {
     if (multiplicity[n] == 0) continue;
     PointTriple piece{};
-    std::ranges::transform(triangulation.faces()[n].corners, piece.begin(),
-                           [&](std::uint32_t corner) { return triangulation.point(corner); });
+    std::ranges::transform(triangulation->faces()[n].corners, piece.begin(),
+                           [&](std::uint32_t corner) { return triangulation->point(corner); });
     if (multiplicity[n] < 0) std::swap(piece[1], piece[2]);
     const std::optional<std::uint32_t> face = group_faces.first_with(piece, effort);
     if (!face) return std::nullopt;

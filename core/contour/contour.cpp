@@ -60,6 +60,13 @@ class CellContour {
     Vec3 position;
     bool on_mesh;
   };
+  // Relative to an origin.
+  struct LoopPoints {
+    std::array<PointOnPlane, std::tuple_size_v<decltype(Loop::corners)>> planes;  // that the surface is of, in the loop
+    std::size_t count = 0;                                                        // of these
+    std::size_t face_points = 0;
+    Vec3 middle;  // of several face points; else of all corners
+  };
 
   [[nodiscard]] bool is_inside(unsigned corner) const { return surface_.cells.cells()[cell_].is_inside(corner); }
   [[nodiscard]] std::uint32_t cell_of(unsigned corner) { return corner_cells_.of(corner); }
@@ -85,6 +92,9 @@ class CellContour {
     loop.has_face_point = loop.has_face_point || count > 0;
   }
 
+  void add_around_two(Loop& loop, const std::array<unsigned, 4>& corners);
+  void add_around_one(Loop& loop, const std::array<unsigned, 4>& corners);
+
   void add_polygons();
   void find_points_within();
   [[nodiscard]] std::uint64_t triangles_of_tetrahedra();
@@ -105,6 +115,9 @@ class CellContour {
   void fill(const Loop& loop, std::size_t number);
   void fill_flat(const Loop& loop);
   [[nodiscard]] Apex apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron);
+  [[nodiscard]] LoopPoints points_of(const Loop& loop, const Vec3& origin) const;
+  [[nodiscard]] std::optional<Vec3> point_on_crease(const LoopPoints& points, const BarycentricCoordinates& within,
+                                                    const kuhn::Tetrahedron& tetrahedron);
   [[nodiscard]] std::optional<Vec3> crease_exit(const Corners& corners, const kuhn::Tetrahedron& tetrahedron,
                                                 const Vec3& from);
   void add_triangle(const Triangle& triangle, std::int32_t source) {
@@ -191,6 +204,30 @@ std::uint64_t CellContour::points_at(const kuhn::Tetrahedron& tetrahedron) {
   return points;
 }
 
+// Around the first two corners, which are of one kind, or the last two.
+void CellContour::add_around_two(Loop& loop, const std::array<unsigned, 4>& corners) {
+  const auto [a, b, c, d] = corners;
+  add_edge(loop, a, c);
+  add_face(loop, a, c, d);
+  add_edge(loop, a, d);
+  add_face(loop, d, a, b);
+  add_edge(loop, b, d);
+  add_face(loop, b, d, c);
+  add_edge(loop, b, c);
+  add_face(loop, c, b, a);
+}
+
+// Around the first corner, which alone is of its kind.
+void CellContour::add_around_one(Loop& loop, const std::array<unsigned, 4>& corners) {
+  const auto [a, b, c, d] = corners;
+  add_edge(loop, a, b);
+  add_face(loop, a, b, c);
+  add_edge(loop, a, c);
+  add_face(loop, a, c, d);
+  add_edge(loop, a, d);
+  add_face(loop, a, d, b);
+}
+
 // Corners are reordered by transpositions, each of which turns the loop around.
 Loop CellContour::loop_of(const kuhn::Tetrahedron& tetrahedron) {
   std::array<unsigned, 4> corner = tetrahedron.corners;
@@ -207,26 +244,12 @@ Loop CellContour::loop_of(const kuhn::Tetrahedron& tetrahedron) {
     for (std::size_t i = 0, next = 0; i < corner.size(); ++i) {
       if (is_inside(corner[i])) swap_corners(next++, i);
     }
-    const auto [a, b, c, d] = corner;  // a and b inside
-    add_edge(loop, a, c);
-    add_face(loop, a, c, d);
-    add_edge(loop, a, d);
-    add_face(loop, d, a, b);
-    add_edge(loop, b, d);
-    add_face(loop, b, d, c);
-    add_edge(loop, b, c);
-    add_face(loop, c, b, a);
+    add_around_two(loop, corner);
   } else {
     const bool lone_inside = inside == 1;
     const auto lone = std::ranges::find_if(corner, [&](unsigned c) { return is_inside(c) == lone_inside; });
     swap_corners(0, static_cast<std::size_t>(lone - corner.begin()));
-    const auto [a, b, c, d] = corner;
-    add_edge(loop, a, b);
-    add_face(loop, a, b, c);
-    add_edge(loop, a, c);
-    add_face(loop, a, c, d);
-    add_edge(loop, a, d);
-    add_face(loop, a, d, b);
+    add_around_one(loop, corner);
     if (!lone_inside) positive = !positive;
   }
   if (!positive) std::reverse(loop.corners.begin(), loop.corners.begin() + static_cast<std::ptrdiff_t>(loop.size));
@@ -294,39 +317,51 @@ std::optional<Vec3> CellContour::crease_exit(const Corners& corners, const kuhn:
   return std::nullopt;
 }
 
+CellContour::LoopPoints CellContour::points_of(const Loop& loop, const Vec3& origin) const {
+  LoopPoints points;
+  Vec3 of_all, of_faces;
+  for (std::size_t i = 0; i < loop.size; ++i) {
+    const LoopCorner& corner = loop.corners[i];
+    const Vec3 from_origin = position(corner) - origin;
+    of_all = of_all + from_origin;
+    if (!corner.edge_point) {
+      of_faces = of_faces + from_origin;
+      ++points.face_points;
+      const LoopCorner& next = loop.corners[(i + 1) % loop.size];
+      if (!next.edge_point) points.planes[points.count++] = {from_origin, normal_of(piece_between(corner, next))};
+    } else if (corner.edge_point->source != kHole) {
+      points.planes[points.count++] = {from_origin, normal_of(*corner.edge_point)};
+    }
+  }
+  points.middle = points.face_points > 1 ? (1.0 / static_cast<double>(points.face_points)) * of_faces
+                                         : (1.0 / static_cast<double>(loop.size)) * of_all;
+  return points;
+}
+
+// Near the middle of the loop. Relative to the tetrahedron's first corner.
+std::optional<Vec3> CellContour::point_on_crease(const LoopPoints& points, const BarycentricCoordinates& within,
+                                                 const kuhn::Tetrahedron& tetrahedron) {
+  std::optional<Vec3> point = creases_.nearest_end_within(within, points.middle, surface_.margins.inner);
+  if (!point && points.face_points == 1) point = crease_exit(within.corners(), tetrahedron, points.middle);
+  if (!point) point = creases_.nearest_within(within, points.middle);
+  // Points of sections may be on fine ones alone.
+  if (!point && face_points_.kind() == PointsOfFaces::kSections)
+    point = creases_.nearest_within(within, points.middle, CreaseKinds::kAll);
+  return point;
+}
+
 CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron& tetrahedron) {
   Corners corners;
   std::ranges::transform(tetrahedron.corners, corners.begin(),
                          [&](unsigned corner) { return surface_.cells.corner(surface_.cells.cells()[cell_], corner); });
-  std::array<PointOnPlane, std::tuple_size_v<decltype(loop.corners)>> planes;
-  std::size_t count = 0, face_points = 0;
-  Vec3 of_all, of_faces;
-  for (std::size_t i = 0; i < loop.size; ++i) {
-    const LoopCorner& corner = loop.corners[i];
-    const Vec3 from_first = position(corner) - corners[0];
-    of_all = of_all + from_first;
-    if (!corner.edge_point) {
-      of_faces = of_faces + from_first;
-      ++face_points;
-      const LoopCorner& next = loop.corners[(i + 1) % loop.size];
-      if (!next.edge_point) planes[count++] = {from_first, normal_of(piece_between(corner, next))};
-    } else if (corner.edge_point->source != kHole) {
-      planes[count++] = {from_first, normal_of(*corner.edge_point)};
-    }
-  }
-  const Vec3 middle = face_points > 1 ? (1.0 / static_cast<double>(face_points)) * of_faces
-                                      : (1.0 / static_cast<double>(loop.size)) * of_all;
+  const LoopPoints points = points_of(loop, corners[0]);
   const BarycentricCoordinates within(corners);
-  std::optional<Vec3> on_crease = creases_.nearest_end_within(within, middle, surface_.margins.inner);
-  if (!on_crease && face_points == 1) on_crease = crease_exit(corners, tetrahedron, middle);
-  if (!on_crease) on_crease = creases_.nearest_within(within, middle);
-  // Points of sections may be on fine ones alone.
-  if (!on_crease && face_points_.kind() == PointsOfFaces::kSections)
-    on_crease = creases_.nearest_within(within, middle, CreaseKinds::kAll);
+  const std::optional<Vec3> on_crease = point_on_crease(points, within, tetrahedron);
   const bool on_mesh = on_crease.has_value();
-  const Vec3 target = on_crease.value_or(middle);
+  const Vec3 target = on_crease.value_or(points.middle);
   // There it is in all planes as well as numbers can tell.
-  const std::optional<Vec3> meeting = common_point(std::span(planes).first(count), target, surface_.tolerance);
+  const std::optional<Vec3> meeting =
+      common_point(std::span(points.planes).first(points.count), target, surface_.tolerance);
   const auto off_square = [&] { return dot(*meeting - target, *meeting - target); };
   const bool meets = meeting && within.is_within(*meeting, surface_.margins.inner) &&
                      (!on_mesh || off_square() <= kSamePlace * surface_.tolerance * surface_.tolerance);

@@ -572,7 +572,7 @@ MUTANTS = [
     Mutant("surface_places_off_faces", "a vertex beside its edge or face is out of place", [
         ("core/contour/vertex_places.cpp", "<= margin_ / 16)", "<= 1.0)")]),
     Mutant("surface_creases_cut_off", "a sharp edge is followed up to where it leaves the cells", [
-        ("core/contour/contour.cpp", "if (!on_crease && face_points == 1)", "if (!on_crease && face_points == 9)")]),
+        ("core/contour/contour.cpp", "if (!point && points.face_points == 1)", "if (!point && points.face_points == 9)")]),
     Mutant("surface_corners_cut_off", "an apex lies on a corner of the mesh", [
         ("core/cells/cell_creases.cpp", "is_within(from_first, margin)) nearest.add", "is_within(from_first, 9.0 + margin)) nearest.add")]),
     Mutant("surface_planes_only", "a face point lies on a sharp edge even where planes do not meet there", [

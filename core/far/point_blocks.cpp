@@ -16,7 +16,7 @@ constexpr double kMostCells = 0x1p21;
 LatticeAxes axes_of_cells(const Box& box, double points) {
   constexpr double kMostAlong = 0x1p16, kFlat = 0x1p-10;
   Vec3 size = box.upper - box.lower;
-  const double longest = std::max({size.x, size.y, size.z});
+  const double longest = longest_side(box);
   for (int axis = 0; axis < 3; ++axis) size[axis] = std::max(size[axis], kFlat * longest);
   const double cells = std::clamp(points, 1.0, kMostCells);
   const double side = std::max(std::cbrt(size.x * size.y * size.z / cells), longest / kMostAlong);

@@ -72,8 +72,8 @@ class CheckedMerger {
       apply_moves(merged, compact);
       SurfaceFaults faults = check.faults(merged, compact, misplaced);
       if (!faults.none()) check.remember(merged, compact, faults);
-      if (round == 0 && faults.nodes > 0) find_moves(merged, check, compact, faults, misplaced);
       if (round == 0) {
+        if (faults.nodes > 0) find_moves(merged, check, compact, faults, misplaced);
         cuts_nodes_off_ = cuts_nodes_off_ || faults.nodes > 0;
         faces_of_all_ = std::max(faces_of_all_, static_cast<double>(compact.triangles.size()));
       }

@@ -168,15 +168,8 @@ bool StarChange::passes_node_below_vertex(const Lattice& lattice) const {
 Box StarChange::box() const {
   constexpr double kSlack = 16 * kDoubt;
   Box box{vertex_, vertex_};
-  for (const Vec3& p : ring_) {
-    for (int axis = 0; axis < 3; ++axis) {
-      box.lower[axis] = std::min(box.lower[axis], p[axis]);
-      box.upper[axis] = std::max(box.upper[axis], p[axis]);
-    }
-  }
-  const Vec3 size = box.upper - box.lower;
-  const double slack = kSlack * std::max({size.x, size.y, size.z});
-  return {box.lower - Vec3{slack, slack, slack}, box.upper + Vec3{slack, slack, slack}};
+  for (const Vec3& p : ring_) extend(box, p);
+  return widened(box, kSlack * longest_side(box));
 }
 
 // Nodes near each face after, row by row along the axis that it is steepest to. Where there is much between the faces,

@@ -1,6 +1,5 @@
 #include "io/mesh/affine_map.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace raycone {
@@ -10,7 +9,7 @@ Vec3 turned(const AffineMap& map, const Vec3& v) { return v.x * map.x + v.y * ma
 
 // To a largest magnitude of about 1, without rounding: by a power of two.
 Vec3 scaled_to_one(const Vec3& v) {
-  const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+  const double largest = largest_coordinate(v);
   if (largest == 0.0 || !std::isfinite(largest)) return v;
   const int exponent = std::ilogb(largest);
   return {std::scalbn(v.x, -exponent), std::scalbn(v.y, -exponent), std::scalbn(v.z, -exponent)};

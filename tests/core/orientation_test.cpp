@@ -11,16 +11,9 @@
 #include <vector>
 
 #include "core/evaluation/winding_number.h"
-#include "core/exact/volume_sign.h"
-#include "core/machine/floating_point.h"
 #include "core/mesh/mesh_statistics.h"
 #include "core/mesh/weld.h"
-#include "core/orientation/canonical_face.h"
-#include "core/orientation/nesting.h"
-#include "core/orientation/nesting_tree.h"
 #include "core/orientation/orient.h"
-#include "core/orientation/surface_field.h"
-#include "core/orientation/surface_samples.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
 
@@ -222,30 +215,6 @@ TEST(Orient, AlternatesWithTheInnermostThoughFewAreAroundIt) {
   expect_restored(joined(joined(wells, box_mesh({3, 3, 3}, {7, 7, 7})), in_wells));
 }
 
-// Surfaces of one box: 1 in 2, 2 in 3, 3 in 1; 0 around all of them; 4 and 5 in 3, and in each other.
-TEST(NestingTree, EndsCirclesWhateverTheOrder) {
-  const std::vector<std::vector<std::uint32_t>> around{{}, {0, 2}, {0, 3}, {0, 1}, {0, 3, 5}, {0, 3, 4}};
-  const std::vector<std::uint32_t> expected{0, 0, 3, 1, 3, 3};
-  std::vector<Vec3> vertices{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {0.1, 0.1, 0.1}};
-  for (double x = 0; x < 0.95; x += 0.1) vertices.push_back({x, 0.5, 0.5});
-  const std::vector<Triangle> faces{{0, 2, 5}, {0, 1, 6}, {0, 1, 7}, {0, 1, 8}, {3, 1, 9}, {3, 1, 10}};
-  std::vector<std::uint32_t> number{0, 1, 2, 3, 4, 5};
-  do {
-    std::vector<ClosedSurface> surfaces(6);
-    std::vector<const ClosedSurface*> pointers(6);
-    std::vector<std::vector<std::uint32_t>> renumbered(6);
-    for (std::size_t i = 0; i < 6; ++i) {
-      surfaces[i].faces = {faces[i]};
-      pointers[number[i]] = &surfaces[i];
-      for (const std::uint32_t outer : around[i]) renumbered[number[i]].push_back(number[outer]);
-      std::ranges::sort(renumbered[number[i]]);
-    }
-    const NestingTree tree = nesting_tree(renumbered, pointers, vertices);
-    ASSERT_EQ(tree.order.size(), 6U);
-    for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(tree.parent[number[i]], number[expected[i]]) << i;
-  } while (std::ranges::next_permutation(number).found);
-}
-
 TEST(Orient, DecidesTheVolumeExactly) {
   // Thin beyond what doubles tell apart from flat.
   const double least = std::numeric_limits<double>::denorm_min();
@@ -253,29 +222,6 @@ TEST(Orient, DecidesTheVolumeExactly) {
     TriangleMesh sliver = box_mesh({size, size, 0}, {3 * size, 2 * size, least});
     expect_restored(sliver);
   }
-}
-
-TEST(VolumeSign, IsExact) {
-  const DefaultFloatingPoint guard;
-  // Volumes cancel but for one in 2^60 of them.
-  TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
-  const TriangleMesh hole = test::reversed(box_mesh({0, 0, 5}, {1, 1, 6}));
-  const TriangleMesh rest = box_mesh({0, 0, 9}, {0x1p-20, 0x1p-20, 9 + 0x1p-20});
-  EXPECT_EQ(volume_sign(mesh.triangles, mesh.vertices), 1);
-  TriangleMesh sum = joined(mesh, hole);
-  EXPECT_EQ(volume_sign(sum.triangles, sum.vertices), 0);
-  sum = joined(sum, rest);
-  EXPECT_EQ(volume_sign(sum.triangles, sum.vertices), 1);
-  sum = test::reversed(sum);
-  EXPECT_EQ(volume_sign(sum.triangles, sum.vertices), -1);
-}
-
-TEST(VolumeSign, IsZeroWhereRoundedTermsDoNotCancel) {
-  const DefaultFloatingPoint guard;
-  Random random(8);
-  const TriangleMesh ball = sphere_of(0.1, {0.3, 0.7, 0.9});
-  const TriangleMesh nothing = joined(test::shuffled(ball, random), test::shuffled(test::reversed(ball), random));
-  EXPECT_EQ(volume_sign(nothing.triangles, nothing.vertices), 0);
 }
 
 TEST(Orient, TurnsAFlatClosedPatchByItsCoordinates) {
@@ -486,69 +432,6 @@ TEST(Orient, TurnsManyTrianglesAroundOnePoint) {
   const TriangleMesh turned = automatic(mesh);
   ASSERT_EQ(turned.triangles.size(), mesh.triangles.size());
   EXPECT_EQ(set_of_faces(automatic(turned)), set_of_faces(turned));
-}
-
-TEST(SurfaceField, IsFiniteNextToTheCentreOfADipole) {
-  const SurfaceDipole dipole{{0, 0, 0}, {0, 0.25, 0}, 0.0};
-  for (const double y : {0.0, 1e-320, 1e-200, 1e-110, 1e-90, 1e-17}) {
-    for (const Vec3& q : {Vec3{y, 0, 0}, Vec3{0, y, 0}}) EXPECT_TRUE(std::isfinite(dipole.at(q))) << y;
-  }
-}
-
-// Of a sphere with a hole, one half has become a point.
-TEST(SurfaceField, DependsOnNoOrderWhereVerticesHaveMet) {
-  const DefaultFloatingPoint guard;
-  Random random(29);
-  TriangleMesh mesh = test::moved(sphere_with_a_hole(1), {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5});
-  for (Vec3& p : mesh.vertices) {
-    if (p.x < 0.45) p = {0.3, 0.6, 0.7};
-  }
-  std::vector<FieldPoint> points;
-  for (int i = 0; i < 200; ++i) points.push_back({test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}}), 0});
-  const std::vector<double> expected = SurfaceField(mesh.triangles, mesh.vertices).winding_numbers(points);
-  for (int i = 0; i < 20; ++i) {
-    const TriangleMesh other = test::shuffled(mesh, random);
-    ASSERT_EQ(SurfaceField(other.triangles, other.vertices).winding_numbers(points), expected) << i;
-  }
-}
-
-// Two sheets that face each other have become one.
-TEST(SurfaceSamples, TellFacesApartByWhereTheyWere) {
-  const DefaultFloatingPoint guard;
-  Random random(31);
-  TriangleMesh sheets = test::soup(random, 40);
-  for (Vec3& p : sheets.vertices) p.z = 0;
-  sheets = joined(sheets, test::moved(test::reversed(sheets), {1, 1, 1}, {0, 0, 1}));
-  const auto sides = [](const TriangleMesh& exact) {
-    std::vector<Vec3> moved = exact.vertices;
-    for (Vec3& p : moved) p.z = 0;
-    std::vector<int> result;
-    const NumberedVertices vertices(moved, exact.vertices);
-    for (const SurfaceSample& sample : sample_surface(exact.triangles, vertices, 15)) result.push_back(sample.side);
-    return result;
-  };
-  for (int i = 0; i < 10; ++i) EXPECT_EQ(sides(test::shuffled(sheets, random)), sides(sheets));
-}
-
-TEST(SurfaceField, IsTheMeanOfBothSidesOnTheSurface) {
-  const DefaultFloatingPoint guard;
-  // Within the unit box; without its last faces it has a boundary.
-  TriangleMesh bowl = test::moved(test::sphere(8), {0.5, 0.5, 0.5}, {0.5, 0.5, 0.5});
-  bowl.triangles.resize(bowl.triangles.size() * 2 / 3);
-  const std::vector<SurfaceSample> samples =
-      sample_surface(bowl.triangles, NumberedVertices(bowl.vertices, bowl.vertices), 20);
-  ASSERT_EQ(samples.size(), 20U);
-  std::vector<FieldPoint> points;
-  for (const SurfaceSample& sample : samples) points.push_back({sample.at, sample.side});
-  const std::vector<double> w = SurfaceField(bowl.triangles, bowl.vertices).winding_numbers(points);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    TriangleMesh others = bowl;
-    std::erase_if(others.triangles,
-                  [&](const Triangle& t) { return (canonical_face(t, bowl.vertices) <=> samples[i].face) == 0; });
-    ASSERT_EQ(others.triangles.size() + 1, bowl.triangles.size());
-    // Roundings of the cone; the face itself, from its middle but for rounding, is half a turn to 1e-14.
-    EXPECT_NEAR(w[i], test::direct_winding_number(others, samples[i].at), 1e-12);
-  }
 }
 
 // ---- What has no orientation ----

@@ -6,7 +6,6 @@
 
 #include "app/process/messages.h"
 #include "app/text/html.h"
-#include "app/text/readable_count.h"
 
 namespace raycone {
 namespace {
@@ -32,15 +31,6 @@ TEST(PlainText, ReplacesWhatATerminalObeysAndNothingElse) {
     const std::string plain = plain_text(name, "?");
     if (plain != (is_dangerous(code) ? "a?b" : name)) ADD_FAILURE() << std::hex << static_cast<unsigned>(code);
   }
-}
-
-TEST(ReadableCount, HasThreeDigitsAndAPrefix) {
-  EXPECT_EQ(readable_count(0.0), "0");
-  EXPECT_EQ(readable_count(999.4), "999");
-  EXPECT_EQ(readable_count(999.6), "1 k") << "not 1e+03";
-  EXPECT_EQ(readable_count(12345.0, "samples/s"), "12.3 ksamples/s");
-  EXPECT_EQ(readable_count(0.5, "meshes/s"), "0.5 meshes/s");
-  EXPECT_EQ(readable_count(2e12), "2e+03 G");
 }
 
 // Every pair and triple of bytes at the borders: what is left is valid and harmless.

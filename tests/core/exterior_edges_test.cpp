@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "core/mesh/edge_uses.h"
-#include "core/mesh/mesh_statistics.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -90,17 +89,6 @@ TEST(ExteriorEdges, OrderDependsOnCoordinatesOnly) {
   EXPECT_EQ(coordinates_in_order(reversed, exterior_edges(reversed)), expected);
 }
 
-TEST(MeshStatistics, OfAFan) {
-  // Five triangles on one edge, three of them in one direction: the edge is non-manifold, net count 1.
-  const MeshStatistics s = mesh_statistics(test::fan(5, 3));
-  EXPECT_EQ(s.nonmanifold_edges, 1U);
-  EXPECT_EQ(s.exterior_edges, 11U);
-  EXPECT_EQ(s.inconsistent_edges, 0U);
-  EXPECT_EQ(s.components, 1U);
-  EXPECT_FALSE(s.closed());
-  EXPECT_FALSE(s.signed_volume.has_value());
-}
-
 // More vertices than fit one piece of work, and vertices with very many edges.
 TEST(ExteriorEdges, OfLargeMeshesAreTheirBoundaryChain) {
   test::Random random(12);
@@ -113,31 +101,6 @@ TEST(ExteriorEdges, OfLargeMeshesAreTheirBoundaryChain) {
     EXPECT_LT(last, std::pair(use.low, use.high));
     last = {use.low, use.high};
   });
-}
-
-TEST(MeshStatistics, TwoFacesInTheSameDirectionAreInconsistent) {
-  EXPECT_EQ(mesh_statistics(test::fan(2, 2)).inconsistent_edges, 1U);
-  EXPECT_EQ(mesh_statistics(test::fan(2, 1)).inconsistent_edges, 0U);
-}
-
-TEST(MeshStatistics, VolumeOfABoxFarFromTheOriginHasTheSignOfItsOrientation) {
-  const TriangleMesh box = test::box_mesh({1e6, 1e6, 1e6}, {1e6 + 2, 1e6 + 3, 1e6 + 4});
-  EXPECT_DOUBLE_EQ(mesh_statistics(box).signed_volume.value(), 24.0);
-  EXPECT_DOUBLE_EQ(mesh_statistics(test::reversed(box)).signed_volume.value(), -24.0);
-}
-
-TEST(MeshStatistics, CountsDegenerateAndDuplicateFaces) {
-  const TriangleMesh mesh{{{0, 0, 0}, {1, 1, 1}, {3, 3, 3}, {0, 1, 0}},
-                          {{0, 1, 2}, {0, 1, 3}, {3, 1, 0}, {1, 3, 0}, {0, 0, 3}}};
-  const MeshStatistics s = mesh_statistics(mesh);
-  EXPECT_EQ(s.degenerate_faces, 2U);
-  EXPECT_EQ(s.duplicate_faces, 2U);
-}
-
-TEST(MeshStatistics, ComponentsAreJoinedThroughVertices) {
-  const TriangleMesh a = test::box_mesh({0, 0, 0}, {1, 1, 1});
-  EXPECT_EQ(mesh_statistics(test::joined(a, test::box_mesh({1, 1, 1}, {2, 2, 2}))).components, 1U);
-  EXPECT_EQ(mesh_statistics(test::joined(a, test::box_mesh({1.5, 1, 1}, {2, 2, 2}))).components, 2U);
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ only_in GMP '[<"]gmp' 'core/exact/(exact_integers\.h|integer_memory\.cpp)'
 only_in TBB '[<"](one)?(api/)?tbb' 'core/machine/threads\.cpp'
 only_in Highway '[<"]hwy' \
   'core/([a-z]+/[a-z_]+(_kernel\.cpp|-inl\.h)|far/shared_corners\.cpp|machine/(simd\.cpp|simd_kernel\.h))'
-only_in OpenVDB '[<"]openvdb' 'io/vdb/(read|write)_vdb\.cpp'
+only_in OpenVDB '[<"]openvdb' 'io/vdb/((read|write)_vdb\.cpp|grid_tree\.h)'
 only_in nlohmann-json '[<"]nlohmann' 'io/mesh/(bounded_json\.(h|cpp)|gltf_document\.cpp)|app/report/json\.cpp'
 only_in tinygltf '[<"]tiny_gltf' 'io/mesh/(gltf_data|read_gltf)\.cpp'
 only_in Expat '[<"]expat' 'io/mesh/xml_reader\.cpp'

@@ -7,6 +7,7 @@
 
 #include "core/crossings/crossings.h"
 #include "core/crossings/projected_grid_builder.h"
+#include "core/machine/threads.h"
 
 namespace raycone {
 
@@ -276,6 +277,45 @@ void ProjectedGrid::crossings(std::span<const Vec3> queries, std::span<std::int6
   }
 }
 
+// ---- How far triangles reach -----------------------------------------------------------------------------------
+
+// From the cells of the first grid that the rays of a square of codes may be in.
+void ProjectedGrid::set_farthest() {
+  constexpr std::size_t kNumbersPerTriangle = 16;  // at least: few beside what a triangle takes itself
+  constexpr int kMostCoarser = 5;
+  while (coarser_ < kMostCoarser && kMortonCodes >> 2 * (coarser_ + 1) >= kNumbersPerTriangle * triangles_.size()) {
+    ++coarser_;
+  }
+  const std::uint32_t squares_per_side = kCodesPerSide >> coarser_;
+  const Grid& grid = grids_.front();
+  struct Range {
+    std::uint32_t first, last;
+  };
+  const auto range = [&](std::uint32_t square, double lower, double codes_per_unit, std::uint32_t count, auto index) {
+    const auto at = [&](double code) { return index(lower + code / codes_per_unit); };
+    return Range{square == 0 ? 0 : at((square << coarser_) - kMargin),
+                 square == squares_per_side - 1 ? count - 1 : at(((square + 1) << coarser_) + kMargin)};
+  };
+  farthest_.resize(std::size_t{squares_per_side} * squares_per_side);
+  parallel_for(squares_per_side, 8, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> of_columns(grid.columns);
+    for (auto z = static_cast<std::uint32_t>(begin); z < end; ++z) {
+      const Range rows = range(z, lower_.z, codes_per_z_, grid.rows, [&](double at) { return grid.row(at); });
+      std::ranges::fill(of_columns, -std::numeric_limits<float>::infinity());
+      for (std::uint32_t row = rows.first; row <= rows.last; ++row) {
+        const Cell* const cells = &cells_[std::uint64_t{row} * grid.columns];
+        for (std::uint32_t i = 0; i < grid.columns; ++i) of_columns[i] = std::max(of_columns[i], cells[i].upper_x);
+      }
+      for (std::uint32_t y = 0; y < squares_per_side; ++y) {
+        const Range columns =
+            range(y, lower_.y, codes_per_y_, grid.columns, [&](double at) { return grid.column(at); });
+        farthest_[interleaved(y | z << 16)] =
+            *std::max_element(of_columns.begin() + columns.first, of_columns.begin() + columns.last + 1);
+      }
+    }
+  });
+}
+
 // ---- The whole -------------------------------------------------------------------------------------------------
 
 namespace {
@@ -300,6 +340,7 @@ ProjectedGrid::ProjectedGrid(const TriangleMesh& mesh) : unit_(0) {
   codes_per_y_ = kCodesPerSide / (upper_.y - lower_.y);
   codes_per_z_ = kCodesPerSide / (upper_.z - lower_.z);
   ProjectedGridBuilder(mesh, *this).build();
+  set_farthest();
 }
 
 }  // namespace raycone

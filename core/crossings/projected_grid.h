@@ -98,6 +98,7 @@ class ProjectedGrid {
     while (cell->holds_grid()) cell = &cells_[grids_[cell->first].cell(y, z)];
     return *cell;
   }
+  void set_farthest();
   // Whether the ray may meet the mesh's box.
   [[nodiscard]] bool may_meet_box(const Local& p) const {
     return p.y >= lower_.y && p.y <= upper_.y && p.z >= lower_.z && p.z <= upper_.z && p.x <= upper_.x;
@@ -105,6 +106,7 @@ class ProjectedGrid {
 
   [[nodiscard]] float farthest(std::uint16_t morton_code) const { return farthest_[morton_code >> 2 * coarser_]; }
 
+  static constexpr double kMargin = 0x1p-16;  // of a cell, or of a square of codes: far more than rounding
   static constexpr std::uint32_t kCodesPerSide = 256;
   // Of the codes along y, in the lower half of v, and along z, in the upper one: they alternate in its bits.
   static std::uint16_t interleaved(std::uint32_t v) {

@@ -379,53 +379,12 @@ void ProjectedGridBuilder::join(const std::vector<Cells>& blocks, const std::vec
   });
 }
 
-// From the cells of the first grid that the rays of a square of codes may be in.
-void ProjectedGridBuilder::set_farthest() {
-  constexpr std::size_t kNumbersPerTriangle = 16;  // at least: few beside what a triangle takes itself
-  constexpr int kMostCoarser = 5;
-  int& coarser = result_.coarser_;
-  while (coarser < kMostCoarser &&
-         ProjectedGrid::kMortonCodes >> 2 * (coarser + 1) >= kNumbersPerTriangle * mesh_.triangles.size()) {
-    ++coarser;
-  }
-  const std::uint32_t squares_per_side = ProjectedGrid::kCodesPerSide >> coarser;
-  const Grid& grid = result_.grids_.front();
-  struct Range {
-    std::uint32_t first, last;
-  };
-  const auto range = [&](std::uint32_t square, double lower, double codes_per_unit, std::uint32_t count, auto index) {
-    const auto at = [&](double code) { return index(lower + code / codes_per_unit); };
-    return Range{square == 0 ? 0 : at((square << coarser) - kMargin),
-                 square == squares_per_side - 1 ? count - 1 : at(((square + 1) << coarser) + kMargin)};
-  };
-  result_.farthest_.resize(std::size_t{squares_per_side} * squares_per_side);
-  parallel_for(squares_per_side, 8, [&](std::size_t begin, std::size_t end) {
-    std::vector<float> of_columns(grid.columns);
-    for (auto z = static_cast<std::uint32_t>(begin); z < end; ++z) {
-      const Range rows =
-          range(z, result_.lower_.z, result_.codes_per_z_, grid.rows, [&](double at) { return grid.row(at); });
-      std::ranges::fill(of_columns, -std::numeric_limits<float>::infinity());
-      for (std::uint32_t row = rows.first; row <= rows.last; ++row) {
-        const Cell* const cells = &result_.cells_[std::uint64_t{row} * grid.columns];
-        for (std::uint32_t i = 0; i < grid.columns; ++i) of_columns[i] = std::max(of_columns[i], cells[i].upper_x);
-      }
-      for (std::uint32_t y = 0; y < squares_per_side; ++y) {
-        const Range columns =
-            range(y, result_.lower_.y, result_.codes_per_y_, grid.columns, [&](double at) { return grid.column(at); });
-        result_.farthest_[ProjectedGrid::interleaved(y | z << 16)] =
-            *std::max_element(of_columns.begin() + columns.first, of_columns.begin() + columns.last + 1);
-      }
-    }
-  });
-}
-
 void ProjectedGridBuilder::build() {
   constexpr double kEntriesPerTriangle = 8.0;
   set_triangles();
   const Rectangle box{{result_.lower_.y, result_.upper_.y}, {result_.lower_.z, result_.upper_.z}};
   result_.grids_.push_back(choose(box, all_sizes(box), kEntriesPerTriangle));
   fill_blocks();
-  set_farthest();
 }
 
 }  // namespace raycone

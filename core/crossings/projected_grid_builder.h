@@ -35,8 +35,7 @@ class ProjectedGridBuilder {
   // coordinates, far below what meshes need.
   static constexpr int kMaxDepth = 4;
   static constexpr double kSmallestCell = 0x1p-30;
-  // What is added to cells and triangles on all sides, in cells: rounding is far below.
-  static constexpr double kMargin = 0x1p-16;
+  static constexpr double kMargin = ProjectedGrid::kMargin;  // added to cells and triangles on all sides, in cells
 
   struct Rectangle {
     Interval y, z;
@@ -94,7 +93,6 @@ class ProjectedGridBuilder {
   [[nodiscard]] Cell finished(const Rectangle& box, std::span<const Entry> entries, int depth, Part& part) const;
   void add_grid(const Grid& grid, std::span<const Entry> entries, int depth, Part& part) const;
   void join(const std::vector<Cells>& blocks, const std::vector<Part>& parts);
-  void set_farthest();
 
   const TriangleMesh& mesh_;
   ProjectedGrid& result_;

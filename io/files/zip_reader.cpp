@@ -225,7 +225,7 @@ std::unique_ptr<ByteSource> ZipReader::open(const Member& member) const {
   return member.deflated ? inflated(std::move(part), member.size, name_of(member)) : std::move(part);
 }
 
-std::string ZipReader::name_of(const Member& member) const { return path_ + '(' + excerpt(member.name) + ')'; }
+std::string ZipReader::name_of(const Member& member) const { return path_ + ": " + excerpt(member.name); }
 
 std::unique_ptr<ByteSource> ZipReader::open_checked(const Member& member) const {
   return std::make_unique<CheckedSource>(open(member), member.checksum, name_of(member));

@@ -34,7 +34,7 @@ class ZipReader {
   // The last one of that name, which replaces others in archives that were appended to. Null where there is none.
   [[nodiscard]] const Member* find(const std::string& name) const;
 
-  // The unpacked bytes of a member. Messages about them call it "PATH(NAME)".
+  // The unpacked bytes of a member. Messages about them call it "PATH: NAME".
   [[nodiscard]] std::unique_ptr<ByteSource> open(const Member& member) const;
   // The same, to be read from start to end: there they are compared with the checksum. read_at() compares nothing.
   [[nodiscard]] std::unique_ptr<ByteSource> open_checked(const Member& member) const;

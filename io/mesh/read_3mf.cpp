@@ -93,7 +93,7 @@ class ThreeMfPackage {
     const ThreeMfModel& from = model(use.part);
     const auto found = from.objects.find(use.object);
     if (found != from.objects.end()) return found->second;
-    throw InputError(file_ + '(' + excerpt(*use.part) + "): no object " + std::to_string(use.object) +
+    throw InputError(file_ + ": " + excerpt(*use.part) + ": no object " + std::to_string(use.object) +
                      ", which a component or an item of the build names");
   }
 

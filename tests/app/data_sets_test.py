@@ -401,7 +401,7 @@ class Points(DataSets):
         numpy.savez("none.npz", other=numpy.zeros((2, 3)))
         self.refused("points %s none.npz" % CUBE, 2, "none.npz: has no array 'points'")
         numpy.savez("flat.npz", points=numpy.zeros(3))
-        self.refused("points %s flat.npz" % CUBE, 2, "flat.npz(points.npy): NPY shape (3,), expected (n, 3 or more)")
+        self.refused("points %s flat.npz" % CUBE, 2, "flat.npz: points.npy: NPY shape (3,), expected (n, 3 or more)")
         numpy.savez("nan.npz", points=numpy.full((2, 3), numpy.nan))
         self.refused("points %s nan.npz" % CUBE, 2, "expected a finite number")
 

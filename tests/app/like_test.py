@@ -319,7 +319,7 @@ class Files(Like):
         facts = json.loads(self.works("info long.npz --json"))
         self.assertEqual(facts["lattice"], json.loads(self.works("info a.npz --json"))["lattice"])
         numpy.savez_compressed("long.npz", **{**dict(numpy.load("a.npz")), "origin": numpy.zeros(1 << 20)})
-        self.refused("lattice %s --like long.npz -o b.npz" % CUBE, 2, "origin.npy)")
+        self.refused("lattice %s --like long.npz -o b.npz" % CUBE, 2, "long.npz: origin.npy: ")
 
     def test_vti_and_report(self):
         indices = places((0, 0, 0), numpy.eye(3), (0, 0, 0), self.counts)

@@ -77,7 +77,7 @@ MUTANTS = [
         ("core/crossings/projected_grid_builder.cpp", "rounded_up(largest(a.x, b.x, c.x))",
          "static_cast<float>(largest(a.x, b.x, c.x) - 0x1p-30)")]),
     Mutant("grid_misses_rays", "rays that meet nothing are told by all cells that they may be in", [
-        ("core/crossings/projected_grid_builder.cpp", "at(((square + 1) << coarser) + kMargin)", "at(square << coarser)")]),
+        ("core/crossings/projected_grid.cpp", "at(((square + 1) << coarser_) + kMargin)", "at(square << coarser_)")]),
     Mutant("passes_miss_rays", "a pass finds rays in the last bin that a triangle reaches, too", [
         ("core/crossings/few_rays.cpp", "below_[bin(upper) + 1] & ~", "below_[bin(upper)] & ~")]),
     Mutant("sections_without_lines", "a long triangle concerns the rows on the lines of its edges, too", [

@@ -114,7 +114,7 @@ Warning nothing_inside(const Rule& rule, Orient orient, const Box& box, const Pl
   const double length = longest_side(box), spacing = lattice.grid.least_spacing();
   if (length < kFew * spacing) {
     return {"empty", nothing + ": the mesh is " + with_digits(length, 3) + " long, and samples are " +
-                         with_digits(spacing, 3) + " apart; a finer lattice helps, --scale where units differ" +
+                         with_digits(spacing, 3) + " apart; --scale helps where units differ, else a finer lattice" +
                          by_turning};
   }
   return {"empty", nothing + "; a finer lattice helps where the mesh is thin" + by_turning};

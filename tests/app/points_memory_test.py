@@ -25,11 +25,12 @@ class PointsOnStandardInput(unittest.TestCase):
     def setUp(self):
         directory = tempfile.TemporaryDirectory()
         self.addCleanup(directory.cleanup)
-        self.report, self.points = (os.path.join(directory.name, name) for name in ("report.json", "points.txt"))
+        names = ("report.json", "points.txt", "mesh.obj")
+        self.report, self.points, self.mesh = (os.path.join(directory.name, name) for name in names)
 
-    def peak(self, pipeline, count):
+    def peak(self, pipeline, count, mesh=MESH):
         """The peak of memory in bytes, every point being answered."""
-        command = ["sh", "-c", pipeline, "sh", str(count), RAYCONE, MESH, self.report, self.points]
+        command = ["sh", "-c", pipeline, "sh", str(count), RAYCONE, mesh, self.report, self.points]
         lines = subprocess.run(command, capture_output=True, text=True, timeout=300, check=True).stdout
         self.assertEqual(int(lines), count + 1)  # and a header
         with open(self.report, encoding="utf-8") as file:
@@ -48,6 +49,16 @@ class PointsOnStandardInput(unittest.TestCase):
     def test_those_of_a_file(self):
         few = self.peak_from_a_file(1000)
         self.assertLessEqual(self.peak_from_a_file(3000), few + ALLOWED_BYTES)
+
+    def test_a_few_points_take_no_grid(self):
+        """The grid takes 250 bytes a face or more; a few points are looked for in all of them."""
+        side = 200
+        with open(self.mesh, "w", encoding="utf-8") as file:
+            file.writelines(f"v {i} {j} {i * j % 7}\n" for i in range(side + 1) for j in range(side + 1))
+            corners = [i * (side + 1) + j + 1 for i in range(side) for j in range(side)]
+            file.writelines(f"f {n} {n + 1} {n + side + 2} {n + side + 1}\n" for n in corners)
+        few, many = (self.peak(FROM_AWK, count, self.mesh) for count in (4_000, 10_000))
+        self.assertGreater(many - few, 200 * 2 * side**2)
 
 
 if __name__ == "__main__":

@@ -294,7 +294,7 @@ class Compressed(unittest.TestCase):
                     archive.writestr(member, content)
             data = bytearray(file.getvalue())
             data[data.index(members[name]) + len(members[name]) - 1] ^= 1
-            self.refused("lattice t.obj --like %s -o m.npy" % self.write("damaged.npz", data), "damaged.npz.%s" % name)
+            self.refused("lattice t.obj --like %s -o m.npy" % self.write("damaged.npz", data), "damaged.npz: %s" % name)
             self.assertFalse(os.path.exists("m.npy"))
 
 

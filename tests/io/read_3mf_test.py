@@ -290,7 +290,7 @@ REFUSED = {
     "line_end": (package(model(TETRAHEDRON.replace('x="', 'x="1&#10;2'), ITEM)), "x is '1?2"),
     "part_of_two_lines": (package(model(TETRAHEDRON, '<item objectid="1" p:path="/a&#10;b"/>')), "no part a?b, expected"),
     "part_too_long": (package(model(TETRAHEDRON, f'<item objectid="1" p:path="/{"x" * 500}"/>')), f"no part {'x' * 120}..., exp"),
-    "member_of_two_lines": (package({"a\nb": "<m/>"}, root=relations("/a&#10;b")), "(a?b):1: element m, expected http"),
+    "member_of_two_lines": (package({"a\nb": "<m/>"}, root=relations("/a&#10;b")), ": a?b:1: element m, expected http"),
     "no_coordinate": (package(model(TETRAHEDRON.replace('x="', 'u="'), ITEM)), "no attribute x"),
     "transform_short": (package(model(TETRAHEDRON, '<item objectid="1" transform="1 0 0"/>')), "expected 12 finite"),
     "transform_long": (package(model(TETRAHEDRON, f'<item objectid="1" transform="{"1 " * 13}"/>')), "more than 12"),

@@ -159,7 +159,7 @@ def batch_with_few_threads(count):
     failed = 0
     for i in range(count):
         arguments = [RAYCONE, "batch", MESHES, "--resolution", "6", "--jobs", "4", "--quiet", "--out-dir", "few%d" % i]
-        process = subprocess.Popen(arguments, stderr=subprocess.PIPE, preexec_fn=lambda: few_threads(11 + i % 2))
+        process = subprocess.Popen(arguments, stderr=subprocess.PIPE, preexec_fn=lambda: few_threads(10 + i % 2))
         try:
             message = process.communicate(timeout=60)[1]
         except subprocess.TimeoutExpired:

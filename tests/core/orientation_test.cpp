@@ -251,6 +251,11 @@ TEST(Orient, JoinsPatchesThatCloseEachOther) {
   ASSERT_EQ(winding(mesh, {0.1, 0.1, 0.1}), 2);
   EXPECT_TRUE(set_of_faces(automatic(mesh)) == set_of_faces(mesh));
   EXPECT_TRUE(set_of_faces(automatic(test::reversed(mesh))) == set_of_faces(mesh));
+  // With a fin at one of their edges, they and the fin do not close as stored; at other edges they close each other.
+  mesh.triangles.push_back({first, first + 1, static_cast<std::uint32_t>(mesh.vertices.size())});
+  mesh.vertices.push_back({1, 1, 0});
+  EXPECT_EQ(winding(automatic(mesh), {0.1, 0.1, 0.1}), 2);
+  EXPECT_EQ(winding(automatic(test::reversed(mesh)), {0.1, 0.1, 0.1}), 2);
 }
 
 TEST(Orient, RestoresCubesThatShareAnEdge) {

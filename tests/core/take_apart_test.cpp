@@ -186,6 +186,23 @@ TEST(TakeApart, MovesTheOneThatLeaves) {
   }
 }
 
+// Two wedges, one above the other, that share an edge of several parts. Either may leave the other one, both along the
+// same axis: where different ones do at the ends of a part, they meet in its middle.
+TEST(TakeApart, MovesTheSameOneAllAlongAnEdge) {
+  std::vector<std::array<int, 3>> cells;
+  for (int y = 0; y < 4; ++y) cells.insert(cells.end(), {{0, y, 1}, {1, y, 0}});
+  TriangleMesh wedges = test::cells_mesh(cells);
+  for (Vec3& p : wedges.vertices) p = {0.5 * (p.x + p.z), p.y, p.z - p.x};
+  test::Random random(9);
+  for (int round = 0; round < 20; ++round) {
+    const TriangleMesh mesh = test::shuffled(wedges, random);
+    Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
+    ASSERT_TRUE(
+        take_apart(taken.mesh, taken.sources, {.distance = kDistance, .against_perturbation = true}).has_value());
+    EXPECT_TRUE(is_closed_and_embedded(taken.mesh)) << round;
+  }
+}
+
 // Nodes on faces, edges and corners of cells stay on the sides that the perturbation has them on.
 TEST(TakeApart, KeepsNodesOnTheirSides) {
   Lattice lattice{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {0, 0, 0}, {}};

@@ -137,6 +137,15 @@ TEST(DoubledQuads, AreNoTetrahedra) {
   }
 }
 
+// Nor are those that have the four edges around in common with others: a corner is off the planes of its three sides.
+TEST(DoubledQuads, AreFlat) {
+  for (const double height : {1e-3, 1e-5}) {
+    TriangleMesh mesh = double_sided(0, true);
+    mesh.vertices[7] = mesh.vertices[7] + height * Vec3{1, 2, 3};
+    EXPECT_EQ(orient(mesh, Orient::kAuto).counts.dropped_duplicates, 0U) << height;
+  }
+}
+
 // Two cubes with a wall in common, which each of them needs.
 TEST(DoubledQuads, AreNoWalls) {
   TriangleMesh mesh = double_sided(0, true);

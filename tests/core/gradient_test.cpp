@@ -318,5 +318,14 @@ TEST(Gradient, NextToAVertexOfAHugeMesh) {
   }
 }
 
+// Products of four lengths have few bits there, which nothing tells afterwards.
+TEST(Gradient, NextToASmallPartOfAMesh) {
+  for (const double small : {0x1p-240, 0x1p-258, 0x1p-266}) {
+    const TriangleMesh mesh{{{small, 0, 0}, {0, small, 0}, {0, 0, small}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                            {{0, 1, 2}, {3, 4, 5}}};
+    expect_sums(mesh, {small * Vec3{0.3, 0.2, 0.7}, small * Vec3{-1, 0.5, 3}, small * Vec3{0.6, 0.5, -0.2}});
+  }
+}
+
 }  // namespace
 }  // namespace raycone

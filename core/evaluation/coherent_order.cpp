@@ -51,11 +51,11 @@ CoherentOrder::Keys CoherentOrder::keys_in_blocks(const ScaledMesh& mesh, const 
 // Embree's rays go in the order of the points: they are for comparison.
 CoherentOrder::Keys CoherentOrder::keys_along_curves(const ScaledMesh& mesh, std::span<const Vec3> points) {
   const ProjectedGrid* const grid = mesh.has_far_field() ? nullptr : mesh.grid_if_built();
-  constexpr unsigned kBits = 7;  // of each axis
-  Keys keys{!grid ? 1U << (3 * kBits) : std::uint32_t{ProjectedGrid::kMortonCodes}, {}, true, {}};
+  const unsigned bits = points.size() > kFewPoints ? 7 : 4;  // of each axis; all places are gone through
+  Keys keys{!grid ? 1U << (3 * bits) : std::uint32_t{ProjectedGrid::kMortonCodes}, {}, true, {}};
   keys.of_points.resize(points.size());
   std::atomic<bool> all_taken = true;
-  const SpaceCurve curve(!grid ? bounding_box(mesh.mesh()) : empty_box(), kBits);
+  const SpaceCurve curve(!grid ? bounding_box(mesh.mesh()) : empty_box(), bits);
   const auto key_of = [&](const Vec3& q) -> std::uint32_t {
     return grid ? grid->morton_code(q) : static_cast<std::uint32_t>(curve.place(q));
   };

@@ -84,7 +84,7 @@ class ScaledMesh {
   [[nodiscard]] const Blocks& blocks() const;
   // None where there are too few points for it. Only before loops over points.
   [[nodiscard]] const BlocksOfPoints* blocks_of_points() const;
-  // Builds what points need; of the grid of rays, what so many more points need. Only before loops over points.
+  // Builds what points need, the grid of rays only if it pays for so many more of them. Only before loops over points.
   void prepare_points(std::uint64_t points) const;
 
   // What follows takes queries in the scale.

@@ -57,10 +57,14 @@ Quad nearest_threshold(const Rule& rule, Quad w) {
   return rounded_half_up(w - Quad(0.5)) + Quad(0.5);
 }
 
-// Nothing where w is just so far from the threshold that its error decides whether it counts as reaching it.
+// Nothing where w is just so far from the threshold that its error decides whether it counts as reaching it, or where
+// it may be an integer just below: that of a closed mesh, which is told from any threshold.
 std::optional<bool> rule_by_definition(const Rule& rule, const QuadWithin& w) {
   const Quad threshold = nearest_threshold(rule, w.value), distance = absolute(w.value - threshold);
   if (distance > kIndistinguishable + w.error) return rule_holds(rule, w.value);
+  const Quad integer = rounded_half_up(w.value);
+  const bool may_be_integer = absolute(w.value - integer) <= w.error;
+  if (may_be_integer && rule_holds(rule, integer) != rule_holds(rule, threshold)) return std::nullopt;
   if (distance < kIndistinguishable - w.error) return rule_holds(rule, threshold);
   return std::nullopt;
 }

@@ -192,6 +192,17 @@ TEST(Verify, LeavesOnlyDocumentedErrorsWhateverTheRule) {
   }
 }
 
+// 0 is told from any of these, though a sum is not.
+TEST(Verify, TakesIntegersOfClosedMeshesForWhatTheyAre) {
+  for (const double threshold : {5e-324, 3e-38, 3e-25, -3e-25}) {
+    for (const RuleKind kind : {RuleKind::kThreshold, RuleKind::kAbs}) {
+      if (kind == RuleKind::kAbs && threshold < 0) continue;
+      const FieldOptions options = all_fields({kind, threshold});
+      EXPECT_EQ(verified(box_mesh({0, 0, 0}, {1, 1, 1}), random_points(200), options).samples, 200U) << threshold;
+    }
+  }
+}
+
 TEST(Verify, NoticesAValueThatTheEvaluatorDidNotGive) {
   const TriangleMesh mesh = random_mesh(10);
   const FieldOptions options = all_fields();

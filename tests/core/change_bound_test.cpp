@@ -104,6 +104,21 @@ TEST(ChangeBound, IsNeverLessBecauseDistancesAreTiny) {
   EXPECT_GT(finite, 500);
 }
 
+// The squares of the areas of its caps underflow, which leaves the caps what they add.
+TEST(ChangeBound, OfATinyLoopIsThatOfALargeOneInScale) {
+  constexpr double kScale = 0x1p-280;
+  TriangleMesh mesh = test::open_box();
+  const ChangeBound large(make_caps(Boundary(mesh), 100.0));
+  for (Vec3& p : mesh.vertices) p = kScale * p;
+  const ChangeBound tiny(make_caps(Boundary(mesh), 100.0 * kScale));
+  for (const double distance : {2.0, 8.0, 64.0}) {
+    const Vec3 q{distance, 0.5, 0.5};
+    const double expected = large.gradient_in({q, q}, 1e9);
+    EXPECT_GT(expected, 0.0);
+    EXPECT_NEAR(kScale * tiny.gradient_in({kScale * q, kScale * q}, 1e9 / kScale), expected, 1e-9 * expected);
+  }
+}
+
 TEST(ChangeBound, IsTheSameForAllSimdLevels) {
   test::Random random(8);
   const Caps caps = make_caps(Boundary(weld(test::soup(random, 40), {})), 0.05);

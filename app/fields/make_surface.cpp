@@ -31,7 +31,7 @@ void check_inside(const ChosenInput& input, const NodeSet& inside, const Surface
   if (inside.reaches_border()) {
     throw InputError(input.name + ": what is inside by the rule " + rule +
                      " reaches the border of the lattice, expected a larger " +
-                     (input.grid ? "grid" : "box (--padding P)") +
+                     (input.like_grid ? "grid" : "box (--padding P)") +
                      (may_turn ? ", faces that agree (--orient auto), or another rule" : ", or another rule"));
   }
 }

@@ -29,7 +29,7 @@ struct MadeSurface {
 struct ChosenInput {
   std::string name;  // of the mesh's file
   Orient orient = Orient::kKeep;
-  bool grid = false;  // the lattice is that of --like
+  bool like_grid = false;  // the lattice is that of --like
 };
 
 // The surface between the inside and the outside nodes of `lattice`, by winding numbers of `mesh`; it has been checked.

@@ -115,26 +115,26 @@ void FieldRun::warn_of_difference(double difference) {
   if (const auto warning = tolerance_not_kept(field_.tolerance, difference)) run_.warn(*warning);
 }
 
-// Less than any measured, so that nothing that fits is refused.
-
-double memory_of_many_points(std::uint64_t triangles, const FieldOptions& field) {
-  constexpr double kPerTriangle = 240.0;  // of the grid over their projections; 250 to 420 are common
-  return field.engine == RayEngine::kScan ? kPerTriangle * static_cast<double>(triangles) : 0.0;
-}
-
 double memory_of_distances(std::uint64_t triangles, const FieldOptions& field) {
-  constexpr double kPerTriangle = 240.0;  // of the search tree: 249 to 300
+  constexpr double kPerTriangle = 240.0;  // less than any measured, so that nothing that fits is refused: 249 to 300
   return field.has(Field::kDistance) ? kPerTriangle * static_cast<double>(triangles) : 0.0;
 }
 
+void check_points_memory(const RunReport& report, const FieldOptions& field, double points, const RunLimits& limits) {
+  constexpr double kPerTriangle = 112.0;  // of a grid, edge-on to the rays: its filters and footprints; 250 are common
+  const bool has_grid = field.engine == RayEngine::kScan && points > static_cast<double>(kFewPoints);
+  const double of_grid = has_grid ? kPerTriangle * static_cast<double>(report.faces) : 0.0;
+  check_memory(report.mesh, of_grid + memory_of_distances(report.faces, field), limits.memory());
+}
+
 void check_parts_memory(const MeshOptions& options, std::size_t parts, const RunLimits& limits) {
-  constexpr double kPerPart = 4096.0;  // 4.2 to 4.8 kB
+  constexpr double kPerPart = 4096.0;  // less than any measured: 4.2 to 4.8 kB
   check_memory(options.path, kPerPart * static_cast<double>(parts), limits.memory());
 }
 
 void check_verify_memory(const MeshOptions& options, const FieldOptions& field, double samples,
                          const RunLimits& limits) {
-  constexpr double kPerSample = 600.0, kPerLabel = 300.0;  // 630 to 650, and 310
+  constexpr double kPerSample = 600.0, kPerLabel = 300.0;  // likewise: 630 to 650, and 310
   const double each = field.labels_only() ? kPerLabel : kPerSample;
   check_memory(options.path, each * std::min(static_cast<double>(field.verify), samples), limits.memory());
 }

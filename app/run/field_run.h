@@ -72,13 +72,14 @@ class FieldRun {
   double largest_bound_ = 0.0;  // of diagnostics
 };
 
-// Bytes that search structures of so many triangles take at least: for winding numbers of many points, and for signed
-// distances where they are wanted.
-[[nodiscard]] double memory_of_many_points(std::uint64_t triangles, const FieldOptions& field);
+// Bytes that signed distances to so many triangles take at least, where they are wanted: their search structure.
 [[nodiscard]] double memory_of_distances(std::uint64_t triangles, const FieldOptions& field);
 
-// Refuses what does not fit within `limits`, before any work on it: evaluators of so many parts, as labels of points
-// have them. Throws LimitError.
+// Refuses what does not fit within `limits`, before any work on it: the search structures of the report's mesh for so
+// many points. Throws LimitError.
+void check_points_memory(const RunReport& report, const FieldOptions& field, double points, const RunLimits& limits);
+
+// The same of evaluators of so many parts, as labels of points have them.
 void check_parts_memory(const MeshOptions& options, std::size_t parts, const RunLimits& limits);
 
 // The same of what verification keeps of a run of `samples`, as far as they are known.

@@ -33,14 +33,15 @@ double writer_memory(const LatticeCommand& command, const RunReport& report) {
   return writer_memory(report.lattice->grid, command.encoding.format, description, slab_kind(report));
 }
 
-// Sides and distances alone have no values that a far field could be for. Distances at points are prepared before, on
-// lattices along the axes when the first slab is evaluated.
+// Sides and distances alone have no values that a far field could be for. Distances at points are prepared before,
+// others when the first slab is evaluated.
 double working_memory(const LatticeCommand& command, const RunReport& report) {
   const FieldOptions& field = command.field;
-  const SlabKind kind = slab_kind(report);
+  const bool as_points = !world_order(*report.lattice).has_value();
   const bool has_values = field.has(Field::kWinding) || field.has(Field::kDensity) || field.diagnostics;
-  const double of_values = has_values ? raycone::working_memory(kind, static_cast<double>(report.samples)) : 0.0;
-  return of_values + (kind.turned ? 0.0 : memory_of_distances(report.faces, field));
+  const double of_values =
+      has_values ? raycone::working_memory(slab_kind(report), static_cast<double>(report.samples)) : 0.0;
+  return of_values + (as_points ? 0.0 : memory_of_distances(report.faces, field));
 }
 
 // What is needed beside what is in memory, as far as it is known before there is a writer. All of it for VDB, whose

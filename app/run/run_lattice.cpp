@@ -84,9 +84,11 @@ TriangleMesh solid_of(const LatticeCommand& command, MeshRun& run, const Triangl
     const Lattice lattice = solid_lattice(command, *run.report.lattice);
     SurfaceOptions options{command.field.rule};
     options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
-    const bool grid = std::holds_alternative<GridReference>(command.lattice);
-    MadeSurface made = make_surface({run.report.mesh, command.mesh.orient, grid}, mesh, exterior_edges(mesh), lattice,
-                                    options, run.limits().memory(), run.start_progress(sample_count(lattice)));
+    const ChosenInput input{.name = run.report.mesh,
+                            .orient = command.mesh.orient,
+                            .like_grid = std::holds_alternative<GridReference>(command.lattice)};
+    MadeSurface made = make_surface(input, mesh, exterior_edges(mesh), lattice, options, run.limits().memory(),
+                                    run.start_progress(sample_count(lattice)));
     run.report.surface = made.report;
     // How its faces are merged does not concern distances.
     for (const Warning& warning : made.warnings) {
@@ -121,9 +123,8 @@ struct LatticeWork {
 void prepare(LatticeCommand& command, LoadedMesh& loaded, MeshRun& run, LatticeWork& work) {
   const PlacedLattice& lattice = *run.report.lattice;
   const bool as_points = !world_order(lattice).has_value();
-  const double of_points = as_points ? memory_of_many_points(run.report.faces, command.field) : 0.0;
-  check_memory(command.mesh.path, of_points + memory_of_distances(run.report.faces, command.field),
-               run.limits().memory());
+  const double points = as_points ? static_cast<double>(run.report.samples) : 0.0;
+  check_points_memory(run.report, command.field, points, run.limits());
   check_verify_memory(command.mesh, command.field, static_cast<double>(run.report.samples), run.limits());
   if (loaded.parts) {
     check_memory(run.report.mesh, LabelVolume::bytes(lattice.grid, loaded.parts->size()), run.limits().memory());

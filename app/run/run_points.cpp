@@ -1,9 +1,11 @@
 #include "app/run/run_points.h"
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <new>
@@ -16,7 +18,6 @@
 
 #include "app/input/run_limits.h"
 #include "app/input/written_files.h"
-#include "app/process/memory_limit.h"
 #include "app/process/stopwatch.h"
 #include "app/process/usage_error.h"
 #include "app/run/field_run.h"
@@ -26,6 +27,7 @@
 #include "app/samples/sampled_points.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
+#include "io/files/unpack.h"
 #include "io/points/read_points.h"
 
 namespace raycone {
@@ -80,16 +82,18 @@ std::unique_ptr<PointReader> open_given_points(const PointsCommand& command, con
   return reader;
 }
 
-// About how many there are, to prepare for. What comes through a pipe may be a few questions: preparing for many would
-// keep them waiting.
-double expected_points(const PointReader& reader, const std::string& path) {
-  constexpr auto kInPipe = static_cast<double>(kFewPoints);
+// About how many there are, where that can be told. What comes through a pipe may be a few questions, and what is
+// packed may be long.
+std::optional<double> expected_points(const PointReader& reader, const std::string& path) {
   constexpr double kBytes = 25;  // of a line of text
   if (const std::optional<std::uint64_t> size = reader.size()) return static_cast<double>(*size);
   std::error_code error;
-  const bool is_file = path != "-" && std::filesystem::is_regular_file(path, error);
-  const std::uintmax_t bytes = is_file ? std::filesystem::file_size(path, error) : 0;
-  return is_file && !error ? static_cast<double>(bytes) / kBytes : kInPipe;
+  if (path == "-" || !std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  std::array<char, 8> head{};
+  std::ifstream(path, std::ios::binary).read(head.data(), head.size());
+  if (is_packed({head.data(), head.size()})) return std::nullopt;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  return error ? std::nullopt : std::optional(static_cast<double>(bytes) / kBytes);
 }
 
 // The mesh as a whole, where something is asked about it or points are to be drawn from it; else one without triangles.
@@ -123,11 +127,11 @@ std::unique_ptr<PointWriter> open_writer(const PointsCommand& command, const Poi
 }
 
 void prepare(const PointsCommand& command, TriangleMesh mesh, LabelledParts* parts, MeshRun& run, PointWork& work) {
-  const double points = expected_points(*work.reader, command.sample ? "-" : command.points);
-  const bool may_be_many = points >= static_cast<double>(kFewPoints);
-  const double of_grid = may_be_many ? memory_of_many_points(run.report.faces, command.field) : 0.0;
-  check_memory(command.mesh.path, of_grid + memory_of_distances(run.report.faces, command.field),
-               run.limits().memory());
+  constexpr auto kFew = static_cast<double>(kFewPoints);
+  constexpr double kMany = std::numeric_limits<double>::infinity();
+  const std::optional<double> expected = expected_points(*work.reader, command.sample ? "-" : command.points);
+  check_points_memory(run.report, command.field, expected.value_or(kMany), run.limits());
+  const double points = expected.value_or(kFew);  // preparing for many would keep questions waiting
   const auto known = static_cast<double>(work.reader->size().value_or(0));
   check_verify_memory(command.mesh, command.field, known, run.limits());
   if (parts) check_parts_memory(command.mesh, parts->size(), run.limits());

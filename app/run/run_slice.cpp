@@ -62,8 +62,7 @@ PictureFrame frame_of(const SliceCommand& command) {
 void check_slice_memory(const Slice& slice, const SliceCommand& command, const RunReport& report,
                         const RunLimits& limits) {
   if (!is_on_lattice(slice, command.field)) {
-    const double of_points = memory_of_many_points(report.faces, command.field);
-    check_memory(command.mesh.path, of_points + memory_of_distances(report.faces, command.field), limits.memory());
+    check_points_memory(report, command.field, static_cast<double>(report.samples), limits);
   }
   if (!slice.lattice) check_parts_memory(command.mesh, report.parts.size(), limits);
   const double values = static_cast<double>(report.samples) * sizeof(double);

@@ -51,7 +51,8 @@ class ByCoordinate {
 
 }  // namespace
 
-void find_candidates(const TriangleMesh& mesh, std::span<const Vec3> queries, std::vector<RayCandidate>& candidates) {
+void for_each_candidate(const TriangleMesh& mesh, std::span<const Vec3> queries,
+                        const std::function<void(const RayCandidate&)>& visit) {
   if (queries.empty()) return;
   const ByCoordinate by_x(queries, 0), by_y(queries, 1), by_z(queries, 2);
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -62,7 +63,7 @@ void find_candidates(const TriangleMesh& mesh, std::span<const Vec3> queries, st
     met &= by_z.within(std::min({a.z, b.z, c.z}), std::max({a.z, b.z, c.z}));
     if (met == 0) continue;
     for (met &= by_x.up_to(std::max({a.x, b.x, c.x})); met != 0; met &= met - 1) {
-      candidates.push_back({static_cast<std::uint32_t>(std::countr_zero(met)), static_cast<std::uint32_t>(t)});
+      visit({static_cast<std::uint32_t>(std::countr_zero(met)), static_cast<std::uint32_t>(t)});
     }
   }
 }

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <span>
-#include <vector>
 
 #include "core/crossings/crossings.h"
 #include "core/data/triangle_mesh.h"
@@ -13,9 +13,10 @@ namespace raycone {
 
 inline constexpr std::size_t kFewRays = 64;
 
-// Appends each triangle whose closed box meets the ray {queries[i] + t x, t >= 0}, once for each such i, and possibly
-// others. A pass takes some nanoseconds a triangle, where building a ProjectedGrid takes as long as a hundred passes,
-// and much memory. Preconditions: at most kFewRays queries; all coordinates are finite. Thread-safe.
-void find_candidates(const TriangleMesh& mesh, std::span<const Vec3> queries, std::vector<RayCandidate>& candidates);
+// Calls visit() for each triangle whose closed box meets the ray {queries[i] + t x, t >= 0}, once for each such i, and
+// possibly for others. A pass takes some nanoseconds a triangle; a ProjectedGrid takes much memory, and about sixty
+// times as long to build. Preconditions: at most kFewRays queries; all coordinates are finite. Thread-safe.
+void for_each_candidate(const TriangleMesh& mesh, std::span<const Vec3> queries,
+                        const std::function<void(const RayCandidate&)>& visit);
 
 }  // namespace raycone

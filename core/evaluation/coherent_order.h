@@ -1,4 +1,4 @@
-// Points of an open mesh in an order in which neighbours are near to each other.
+// Points in an order in which neighbours are near to each other.
 #pragma once
 
 #include <cstddef>

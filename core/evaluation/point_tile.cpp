@@ -22,33 +22,44 @@ Tally PointTile::evaluate(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
 // First what is certain, then what predicates decide.
 void PointTile::find_crossings(const ScaledMesh& mesh) {
   std::fill_n(degenerate_.begin(), count_, Degenerate{});
-  doubtful_.clear();
-  const std::span<const Vec3> queries(queries_.data(), count_);
   if (mesh.options().ray_engine == RayEngine::kEmbree) {
-    take_candidates_of_embree(mesh);
+    ask_embree(mesh);
   } else if (const ProjectedGrid* const grid = mesh.grid_if_built()) {
-    grid->crossings(queries, {n_.data(), count_}, doubtful_);
+    doubtful_.clear();
+    grid->crossings({queries_.data(), count_}, {n_.data(), count_}, doubtful_);
+    for (const RayCandidate& candidate : doubtful_) decide(mesh, candidate);
   } else {
-    static_assert(kTile <= kFewRays);
-    std::fill_n(n_.begin(), count_, 0);
-    find_candidates(mesh.mesh(), queries, doubtful_);
-  }
-  for (const auto& [i, triangle] : doubtful_) {
-    const Vec3& q = queries_[i];
-    const TriangleCrossing crossing = mesh.crossing(triangle, {q.y, q.z, {&q.x, 1}});
-    if (crossing.crossed > 0) n_[i] += crossing.sigma;
-    if (crossing.met > 0) degenerate_[i].ties += crossing.ties;
-    if (crossing.on_begin < crossing.on_end) degenerate_[i].on_surface = true;
+    pass_over(mesh);
   }
 }
 
-// None of which is certain.
-void PointTile::take_candidates_of_embree(const ScaledMesh& mesh) {
+void PointTile::ask_embree(const ScaledMesh& mesh) {
   for (std::uint32_t i = 0; i < count_; ++i) {
     n_[i] = 0;
     mesh.rays().find_candidates(queries_[i], candidates_);
-    for (const std::uint32_t triangle : candidates_) doubtful_.push_back({i, triangle});
+    for (const std::uint32_t triangle : candidates_) decide(mesh, {i, triangle});
   }
+}
+
+// Candidates may be many: they are not kept.
+void PointTile::pass_over(const ScaledMesh& mesh) {
+  static_assert(kTile <= kFewRays);
+  std::fill_n(n_.begin(), count_, 0);
+  std::uint64_t candidates = 0;
+  for_each_candidate(mesh.mesh(), {queries_.data(), count_}, [&](const RayCandidate& candidate) {
+    decide(mesh, candidate);
+    ++candidates;
+  });
+  mesh.count_pass(count_, candidates);
+}
+
+void PointTile::decide(const ScaledMesh& mesh, const RayCandidate& candidate) {
+  const auto& [i, triangle] = candidate;
+  const Vec3& q = queries_[i];
+  const TriangleCrossing crossing = mesh.crossing(triangle, {q.y, q.z, {&q.x, 1}});
+  if (crossing.crossed > 0) n_[i] += crossing.sigma;
+  if (crossing.met > 0) degenerate_[i].ties += crossing.ties;
+  if (crossing.on_begin < crossing.on_end) degenerate_[i].on_surface = true;
 }
 
 void PointTile::set_values(const ScaledMesh& mesh, PointBlocks::Sums* sums) {

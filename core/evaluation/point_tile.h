@@ -40,7 +40,9 @@ class PointTile {
   };
 
   void find_crossings(const ScaledMesh& mesh);
-  void take_candidates_of_embree(const ScaledMesh& mesh);
+  void ask_embree(const ScaledMesh& mesh);
+  void pass_over(const ScaledMesh& mesh);
+  void decide(const ScaledMesh& mesh, const RayCandidate& candidate);
   void set_values(const ScaledMesh& mesh, PointBlocks::Sums* sums);
   void set_diagnostics(const ScaledMesh& mesh);
 

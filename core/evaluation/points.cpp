@@ -91,19 +91,26 @@ Tally evaluate_closed(const ScaledMeshes& meshes, std::span<const Vec3> points, 
 
 // ---- All meshes ------------------------------------------------------------------------------------------------
 
+// Points of a thread that are to be evaluated, by the mesh that takes them.
+struct Tiles {
+  PointTile scaled, unscaled;
+
+  Tiles(const ValueOutputs& out, ScaledMesh::Settling settling)
+      : scaled(out.values, out.diagnostics, settling), unscaled(out.values, out.diagnostics, settling) {}
+};
+
 // What evaluates the points of a batch.
 class BatchEvaluation {
  public:
   BatchEvaluation(const ScaledMeshes& meshes, const CoherentOrder& order) : meshes_(meshes), order_(order) {}
 
-  // Points of no blocks.
-  Tally evaluate(std::span<const CoherentOrder::SortedPoint> points, PointTile& tile) const {
-    const ScaledMesh& scaled = meshes_.scaled();
+  // Points of no blocks. Unscaled ones each for itself: sums round by the other points of a tile there.
+  Tally evaluate(std::span<const CoherentOrder::SortedPoint> points, Tiles& tiles) const {
     Tally tally;
     for (const CoherentOrder::SortedPoint& p : points) {
-      const bool exact = order_.all_taken() || scaled.can_take(p.point);
-      if (!exact) tally += tile.evaluate(scaled);
+      const bool exact = order_.all_taken() || meshes_.scaled().can_take(p.point);
       const ScaledMesh& mesh = meshes_.of_query(exact);
+      PointTile& tile = exact ? tiles.scaled : tiles.unscaled;
       tile.add(p.index, mesh.to_scale(p.point));
       if (!exact || tile.full()) tally += tile.evaluate(mesh);
     }
@@ -112,23 +119,23 @@ class BatchEvaluation {
 
   // In blocks of points, group by group.
   Tally evaluate_groups(const PointBlocks& blocks, std::span<const CoherentOrder::SortedPoint> points,
-                        PointTile& tile) const {
+                        Tiles& tiles) const {
     const ScaledMesh& scaled = meshes_.scaled();
     Tally tally;
     for (auto begin = points.begin(), end = begin; begin != points.end(); begin = end) {
       const std::uint32_t key = begin->key;
       end = std::find_if(begin, points.end(), [&](const auto& p) { return p.key != key; });
       if (key == CoherentOrder::kOutside) {
-        tally += evaluate({begin, end}, tile);
-        tally += tile.evaluate(scaled);
+        tally += evaluate({begin, end}, tiles);
+        tally += tiles.scaled.evaluate(scaled);
         continue;
       }
       PointBlocks::Sums sums(blocks, key - 1);
       for (const CoherentOrder::SortedPoint& p : std::span(begin, end)) {
-        tile.add(p.index, scaled.to_scale(p.point));
-        if (tile.full()) tally += tile.evaluate(scaled, &sums);
+        tiles.scaled.add(p.index, scaled.to_scale(p.point));
+        if (tiles.scaled.full()) tally += tiles.scaled.evaluate(scaled, &sums);
       }
-      tally += tile.evaluate(scaled, &sums);
+      tally += tiles.scaled.evaluate(scaled, &sums);
     }
     return tally;
   }
@@ -151,23 +158,30 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, c
                      ScaledMesh::Settling settling) {
   const ScaledMesh& scaled = meshes.scaled();
   const CoherentOrder order(scaled, points);
-  if (!order.all_taken()) meshes.unscaled().prepare_points(points.size());
+  if (!order.all_taken()) meshes.unscaled().prepare_points(kTile * points.size());  // each takes a pass of its own
   const BlocksOfPoints* const blocks = scaled.blocks_of_points();
   if (blocks) blocks->sums.prepare(order.groups());
   const BatchEvaluation batch(meshes, order);
   SharedTally total;
   parallel_for(CoherentOrder::kBuckets, buckets_of_a_part(points.size()), [&](std::size_t begin, std::size_t end) {
-    PointTile tile(out.values, out.diagnostics, settling);
+    Tiles tiles(out, settling);
     Tally tally;
     for (std::size_t bucket = begin; bucket < end; ++bucket) {
       const auto sorted = order[bucket];
-      tally += blocks ? batch.evaluate_groups(blocks->sums, sorted, tile) : batch.evaluate(sorted, tile);
+      tally += blocks ? batch.evaluate_groups(blocks->sums, sorted, tiles) : batch.evaluate(sorted, tiles);
       out.count_done(sorted.size());
     }
-    tally += tile.evaluate(scaled);
+    tally += tiles.scaled.evaluate(scaled);
     total.add(tally);
   });
   return total.total();
+}
+
+// How many points are evaluated together that are not of a closed mesh with a grid. What the first of those cost that
+// do without one tells whether it pays for the others.
+std::size_t batch_of(const ScaledMesh& mesh) {
+  const bool is_first = mesh.options().ray_engine == RayEngine::kScan && !mesh.grid_if_built() && !mesh.has_passed();
+  return is_first ? kTile * static_cast<std::size_t>(thread_count()) : CoherentOrder::batch(mesh);
 }
 
 }  // namespace
@@ -176,13 +190,12 @@ Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, 
                       ScaledMesh::Settling settling) {
   Tally total;
   const ScaledMesh& scaled = meshes.scaled();
-  // What the points need is built before the loops over them, within which threads would wait for one another.
-  scaled.prepare_points(points.size());
-  const bool closed = scaled.is_closed() && scaled.grid_if_built() != nullptr;
   constexpr std::size_t kIndexable = std::size_t{1} << 31;
-  const std::size_t batch = closed ? kIndexable : CoherentOrder::batch(scaled);
-  for (std::size_t begin = 0; begin < points.size(); begin += batch) {
-    const std::size_t count = std::min(batch, points.size() - begin);
+  for (std::size_t begin = 0, count = 0; begin < points.size(); begin += count) {
+    // What the points need is built before the loops over them, within which threads would wait for one another.
+    scaled.prepare_points(points.size() - begin);
+    const bool closed = scaled.is_closed() && scaled.grid_if_built() != nullptr;
+    count = std::min(closed ? kIndexable : batch_of(scaled), points.size() - begin);
     const Diagnostics diagnostics = out.diagnostics ? out.diagnostics->part(begin, count) : Diagnostics{};
     const ValueOutputs of_batch{out.values.subspan(begin, count), out.done, out.diagnostics ? &diagnostics : nullptr};
     total += (closed ? evaluate_closed : evaluate_batch)(meshes, points.subspan(begin, count), of_batch, settling);

@@ -141,14 +141,25 @@ const FarField* ScaledMesh::far_field_for(std::size_t samples) const {
   return far_field_without_waiting();
 }
 
-// Without it each tile of points takes a pass over the triangles (few_rays.h). Nobody knows how many points will come:
-// it is built once these passes have taken about as long as building it does, so that a few points never wait for it,
-// and many wait at most twice as long.
+void ScaledMesh::count_pass(std::uint64_t points, std::uint64_t candidates) const {
+  passes_.fetch_add(1, std::memory_order_relaxed);
+  passed_points_.fetch_add(points, std::memory_order_relaxed);
+  candidates_.fetch_add(candidates, std::memory_order_relaxed);
+}
+
+// Without it each tile of points takes a pass over the triangles, and each candidate as long as some of these. Nobody
+// knows how many points will come: it is built once this takes about as long as building it, so that a few points do
+// not wait for it, and many wait about twice as long at most.
 bool ScaledMesh::grid_pays(std::uint64_t points) const {
-  constexpr std::uint64_t kPasses = kFewPoints / kTile;
+  constexpr double kPasses = static_cast<double>(kFewPoints) / kTile, kTrianglesPerCandidate = 5.0;
   if (grid_.if_built() || points > kFewPoints) return true;
-  const std::uint64_t passes = (points + kTile - 1) / kTile;
-  return passes_.fetch_add(passes, std::memory_order_relaxed) + passes > kPasses;
+  const auto passed = static_cast<double>(passed_points_.load(std::memory_order_relaxed));
+  const auto candidates = static_cast<double>(candidates_.load(std::memory_order_relaxed));
+  const auto more = static_cast<double>(points);
+  const double passes = static_cast<double>(passes_.load(std::memory_order_relaxed)) + std::ceil(more / kTile);
+  const double all_candidates = passed > 0.0 ? candidates * (1.0 + more / passed) : 0.0;
+  const auto triangles = static_cast<double>(mesh_.triangles.size());
+  return passes + kTrianglesPerCandidate * all_candidates / triangles > kPasses;
 }
 
 void ScaledMesh::prepare_points(std::uint64_t points) const {

@@ -86,6 +86,9 @@ class ScaledMesh {
   [[nodiscard]] const BlocksOfPoints* blocks_of_points() const;
   // Builds what points need, the grid of rays only if it pays for so many more of them. Only before loops over points.
   void prepare_points(std::uint64_t points) const;
+  // A pass over the triangles in place of a grid (few_rays.h), for so many points, has found so many candidates.
+  void count_pass(std::uint64_t points, std::uint64_t candidates) const;
+  [[nodiscard]] bool has_passed() const { return passes_.load(std::memory_order_relaxed) > 0; }
 
   // What follows takes queries in the scale.
 
@@ -162,7 +165,8 @@ class ScaledMesh {
   Boundary boundary_;
   std::unique_ptr<const WindingNumberEngine> direct_;  // none where the mesh is closed
   SummationChoice choice_;                             // refers to boundary_
-  mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0, passes_ = 0;
+  mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
+  mutable std::atomic<std::uint64_t> passes_ = 0, passed_points_ = 0, candidates_ = 0;  // of passes over triangles
   mutable std::atomic_flag far_is_taken_;
   BuiltOnce<RayCaster> rays_;
   BuiltOnce<ProjectedGrid> grid_;

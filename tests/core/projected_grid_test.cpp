@@ -65,11 +65,11 @@ std::vector<Found> by_grid(const ProjectedGrid& grid, const TriangleMesh& mesh, 
 // What passes over the triangles find.
 std::vector<Found> by_passes(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
   std::vector<Found> found(queries.size());
-  std::vector<RayCandidate> candidates;
   for (std::size_t first = 0; first < queries.size(); first += kFewRays) {
-    candidates.clear();
-    find_candidates(mesh, std::span(queries).subspan(first, std::min(kFewRays, queries.size() - first)), candidates);
-    for (const auto& [i, triangle] : candidates) found[first + i].add(mesh, triangle, queries[first + i]);
+    const std::span<const Vec3> few = std::span(queries).subspan(first, std::min(kFewRays, queries.size() - first));
+    for_each_candidate(mesh, few, [&](const RayCandidate& candidate) {
+      found[first + candidate.query].add(mesh, candidate.triangle, few[candidate.query]);
+    });
   }
   return found;
 }

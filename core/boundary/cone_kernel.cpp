@@ -67,6 +67,32 @@ struct EdgeRange {
   std::size_t begin, end;
 };
 
+// A product, and the lanes where it is right.
+struct Trial {
+  ProductLanes z;
+  LaneMask trusted;
+};
+
+// What multiply_block() multiplies, but at each of the samples without the edges that have no factor there. In a tile
+// of one ray these are not even tried, and a value must not depend on the other samples of its tile.
+template <class Rays>
+HWY_INLINE Trial product_without_level_edges(const ProductTile& products, const Rays& rays, std::size_t i,
+                                             const ChunkView<Rays>& view, const EdgeRange& block) {
+  Trial trial{load(products, i), hn::FirstN(d, hn::Lanes(d))};
+  ProductLanes& z = trial.z;
+  for (std::size_t n = block.begin; n < block.end; ++n) {
+    if (rays.is_without_factor(n, i)) continue;
+    const LaneMask none = rays.without_factor(n, view.projections);
+    const EdgeFactors factors = factors_of(rays, view, n);
+    trial.trusted = hn::And(trial.trusted, hn::Or(none, is_not_near(factors)));
+    const ProductLanes next = times(z, factors.re, factors.im, factors.direction);
+    z = {hn::IfThenElse(none, z.re, next.re), hn::IfThenElse(none, z.im, next.im),
+         hn::IfThenElse(none, z.passages, next.passages)};
+  }
+  trial.trusted = hn::And(trial.trusted, is_sound(z));
+  return trial;
+}
+
 // What multiply_block() does, factor by factor, for those of the samples from i on whose bit in `trusted` is not set.
 template <class Rays>
 HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, const Rays& rays,
@@ -81,7 +107,7 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, 
     hn::Store(factors.re, d, re.data());
     hn::Store(factors.im, d, im.data());
     const std::uint64_t plain = bits_of(hn::And(is_not_near(factors), in_range));
-    const std::uint64_t done = trusted | rays.without_factor(n, view.projections);
+    const std::uint64_t done = trusted | bits_of(rays.without_factor(n, view.projections));
     for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) {
       const Vec3 q = samples.query(i + lane);
       if ((done >> lane) & 1U) continue;
@@ -102,7 +128,7 @@ HWY_INLINE void multiply_block(ProductTile& products, const Chunk& chunk, const 
                                std::size_t i, const ChunkView<Rays>& view, std::size_t next, ChunkView<Rays>& next_view,
                                const EdgeRange& block) {
   ProductLanes z = load(products, i);
-  auto trusted = hn::Eq(z.re, z.re);  // all
+  LaneMask trusted = hn::FirstN(d, hn::Lanes(d));
   for (std::size_t n = block.begin; n < block.end; ++n) {
     next_view.set_vertex(chunk, rays, samples, n + 1, next);
     if (rays.is_without_factor(n, i)) continue;
@@ -114,8 +140,11 @@ HWY_INLINE void multiply_block(ProductTile& products, const Chunk& chunk, const 
   if (HWY_LIKELY(hn::AllTrue(d, trusted))) {
     store(scaled(z), products, i);
   } else {
-    multiply_carefully(products, chunk, rays, samples, i, view, block, bits_of(trusted));
-    store_trusted(z, trusted, products, i);
+    const Trial trial = product_without_level_edges(products, rays, i, view, block);
+    if (!hn::AllTrue(d, trial.trusted)) {
+      multiply_carefully(products, chunk, rays, samples, i, view, block, bits_of(trial.trusted));
+    }
+    store_trusted(trial.z, trial.trusted, products, i);
   }
 }
 

@@ -140,8 +140,8 @@ class EdgesOfOneRay {
 
   // The projections of vertices for a group of samples, beyond what all samples share.
   struct Projections {};
-  // A bit for each sample of the group at which edge n has no factor, beside is_without_factor().
-  [[nodiscard]] std::uint64_t without_factor(std::size_t, const Projections&) const { return 0; }
+  // The samples of the group at which edge n has no factor, beside is_without_factor().
+  [[nodiscard]] LaneMask without_factor(std::size_t, const Projections&) const { return hn::FirstN(d, 0); }
   // Projects vertex n for the samples from i on, and returns its |P|^2.
   [[nodiscard]] Lanes project_vertex(std::size_t n, std::size_t, Projections&) const { return hn::Set(d, square_[n]); }
   // Edge n, whose ends have been projected.
@@ -181,9 +181,9 @@ class EdgesOfRays {
     alignas(64) LaneColumn y, z, square;
     [[nodiscard]] ProjectedVertex vertex(std::size_t n) const { return {load(y, n), load(z, n), load(square, n)}; }
   };
-  [[nodiscard]] std::uint64_t without_factor(std::size_t n, const Projections& projections) const {
+  [[nodiscard]] LaneMask without_factor(std::size_t n, const Projections& projections) const {
     const ProjectedVertex a = projections.vertex(n), b = projections.vertex(n + 1);
-    return bits_of(is_level_beside(a.y, a.z, b.y, b.z));
+    return is_level_beside(a.y, a.z, b.y, b.z);
   }
   [[nodiscard]] Lanes project_vertex(std::size_t n, std::size_t i, Projections& projections) const {
     const Lanes y = hn::Sub(hn::Set(d, chunk_.y[n]), hn::Load(d, &samples_.y[i]));
@@ -224,7 +224,7 @@ class EdgesOfRows {
   struct Projections {
     std::size_t row;
   };
-  [[nodiscard]] std::uint64_t without_factor(std::size_t, const Projections&) const { return 0; }
+  [[nodiscard]] LaneMask without_factor(std::size_t, const Projections&) const { return hn::FirstN(d, 0); }
   [[nodiscard]] Lanes project_vertex(std::size_t n, std::size_t i, Projections& projections) const {
     projections.row = i / 8;
     return hn::Set(d, square_[8 * n + projections.row]);

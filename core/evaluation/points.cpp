@@ -104,7 +104,7 @@ class BatchEvaluation {
  public:
   BatchEvaluation(const ScaledMeshes& meshes, const CoherentOrder& order) : meshes_(meshes), order_(order) {}
 
-  // Points of no blocks. Unscaled ones each for itself: sums round by the other points of a tile there.
+  // Points of no blocks.
   Tally evaluate(std::span<const CoherentOrder::SortedPoint> points, Tiles& tiles) const {
     Tally tally;
     for (const CoherentOrder::SortedPoint& p : points) {
@@ -112,7 +112,7 @@ class BatchEvaluation {
       const ScaledMesh& mesh = meshes_.of_query(exact);
       PointTile& tile = exact ? tiles.scaled : tiles.unscaled;
       tile.add(p.index, mesh.to_scale(p.point));
-      if (!exact || tile.full()) tally += tile.evaluate(mesh);
+      if (tile.full()) tally += tile.evaluate(mesh);
     }
     return tally;
   }
@@ -140,6 +140,13 @@ class BatchEvaluation {
     return tally;
   }
 
+  // What is left in the tiles.
+  Tally finish(Tiles& tiles) const {
+    Tally tally = tiles.scaled.evaluate(meshes_.scaled());
+    if (!order_.all_taken()) tally += tiles.unscaled.evaluate(meshes_.unscaled());
+    return tally;
+  }
+
  private:
   const ScaledMeshes& meshes_;
   const CoherentOrder& order_;
@@ -158,7 +165,7 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, c
                      ScaledMesh::Settling settling) {
   const ScaledMesh& scaled = meshes.scaled();
   const CoherentOrder order(scaled, points);
-  if (!order.all_taken()) meshes.unscaled().prepare_points(kTile * points.size());  // each takes a pass of its own
+  if (!order.all_taken()) meshes.unscaled().prepare_points(points.size());
   const BlocksOfPoints* const blocks = scaled.blocks_of_points();
   if (blocks) blocks->sums.prepare(order.groups());
   const BatchEvaluation batch(meshes, order);
@@ -171,7 +178,7 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, c
       tally += blocks ? batch.evaluate_groups(blocks->sums, sorted, tiles) : batch.evaluate(sorted, tiles);
       out.count_done(sorted.size());
     }
-    tally += tiles.scaled.evaluate(scaled);
+    tally += batch.finish(tiles);
     total.add(tally);
   });
   return total.total();

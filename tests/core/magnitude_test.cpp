@@ -432,6 +432,35 @@ TEST(Magnitude, CallersFlushToZeroDoesNotMatterForSubnormalQueries) {
 // --- The ends of the range ---
 
 // Coordinates that no scaled double holds, against a mesh of the other end of the range.
+// Far away factors are large, and edges level with a ray have none: a tile of one ray knows that beforehand.
+TEST(Magnitude, FarPointsHaveTheSameValuesAloneAsAmongOthers) {
+  Random random(12);
+  int ties = 0, values_of_open_meshes = 0;
+  for (const TriangleMesh& mesh : {test::lattice_soup(random, 30, 3), test::open_box(), test::fan(24, 5)}) {
+    std::vector<Vec3> queries;
+    for (int i = 0; i < 200; ++i) {
+      const double far = std::ldexp(1.0, static_cast<int>(random() % 130));
+      Vec3 q = test::uniform_point(random, {{-far, -far, -far}, {far, far, far}});
+      const Vec3& level = mesh.vertices[random() % mesh.vertices.size()];
+      if (i % 4 != 0) q[1 + i % 2] = level[1 + i % 2];
+      queries.push_back(q);
+    }
+    for (const SimdLevel simd : {SimdLevel::kSse4, SimdLevel::kBest}) {
+      const WindingNumberEvaluator evaluator(mesh, {.level = simd, .summation = Summation::kCone});
+      std::vector<double> values(queries.size());
+      ties += evaluator.evaluate(queries, values).degenerate > 0 ? 1 : 0;
+      for (std::size_t i = 0; i < queries.size(); ++i) {
+        double alone = 0;
+        evaluator.evaluate({&queries[i], 1}, {&alone, 1});
+        EXPECT_EQ(alone, values[i]) << i;
+        values_of_open_meshes += alone != std::round(alone) ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(ties, 2);
+  EXPECT_GT(values_of_open_meshes, 500);
+}
+
 TEST(Magnitude, SubnormalQueriesOfHugeMeshes) {
   Random random(8);
   for (const double size : {1.0, 0x1p100, 0x1p900, 0x1p1023}) {

@@ -445,8 +445,10 @@ TEST(Magnitude, FarPointsHaveTheSameValuesAloneAsAmongOthers) {
       if (i % 4 != 0) q[1 + i % 2] = level[1 + i % 2];
       queries.push_back(q);
     }
-    for (const SimdLevel simd : {SimdLevel::kSse4, SimdLevel::kBest}) {
-      const WindingNumberEvaluator evaluator(mesh, {.level = simd, .summation = Summation::kCone});
+    for (const EvaluatorOptions& options :
+         {EvaluatorOptions{.level = SimdLevel::kSse4, .summation = Summation::kCone},
+          EvaluatorOptions{.summation = Summation::kCone}, EvaluatorOptions{.summation = Summation::kTriangles}}) {
+      const WindingNumberEvaluator evaluator(mesh, options);
       std::vector<double> values(queries.size());
       ties += evaluator.evaluate(queries, values).degenerate > 0 ? 1 : 0;
       for (std::size_t i = 0; i < queries.size(); ++i) {

@@ -1,11 +1,9 @@
 #include "app/run/run_points.h"
 
-#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <memory>
 #include <new>
@@ -27,6 +25,7 @@
 #include "app/samples/sampled_points.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
+#include "io/files/read_file.h"
 #include "io/files/unpack.h"
 #include "io/points/read_points.h"
 
@@ -89,9 +88,8 @@ std::optional<double> expected_points(const PointReader& reader, const std::stri
   if (const std::optional<std::uint64_t> size = reader.size()) return static_cast<double>(*size);
   std::error_code error;
   if (path == "-" || !std::filesystem::is_regular_file(path, error)) return std::nullopt;
-  std::array<char, 8> head{};
-  std::ifstream(path, std::ios::binary).read(head.data(), head.size());
-  if (is_packed({head.data(), head.size()})) return std::nullopt;
+  constexpr std::size_t kHead = 8;
+  if (is_packed(first_bytes(path, kHead))) return std::nullopt;
   const std::uintmax_t bytes = std::filesystem::file_size(path, error);
   return error ? std::nullopt : std::optional(static_cast<double>(bytes) / kBytes);
 }

@@ -53,13 +53,18 @@ std::string read_file(const std::string& path, std::uint64_t max_bytes) {
   return bytes;
 }
 
-bool file_starts_with(const std::string& path, std::string_view bytes) {
+std::string first_bytes(const std::string& path, std::size_t count) {
   std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return false;
-  std::string first(bytes.size(), '\0');
+  if (!std::filesystem::is_regular_file(path, error)) return {};
+  std::string first(count, '\0');
   std::ifstream file(path, std::ios::binary);
-  file.read(first.data(), static_cast<std::streamsize>(first.size()));
-  return file && first == bytes;
+  file.read(first.data(), static_cast<std::streamsize>(count));
+  first.resize(static_cast<std::size_t>(file.gcount()));
+  return first;
+}
+
+bool file_starts_with(const std::string& path, std::string_view bytes) {
+  return first_bytes(path, bytes.size()) == bytes;
 }
 
 struct Sha256::State {

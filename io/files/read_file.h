@@ -1,6 +1,7 @@
 // Whole files in memory, and their hash.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -15,6 +16,9 @@ namespace raycone {
 // All bytes of a regular file, FIFO or device, or of standard input for "-". Throws InputError, LimitError where the
 // file is larger than `max_bytes`.
 [[nodiscard]] std::string read_file(const std::string& path, std::uint64_t max_bytes = UINT64_MAX);
+
+// The first bytes of a regular file, at most `count`; none where it is no such file, or cannot be read.
+[[nodiscard]] std::string first_bytes(const std::string& path, std::size_t count);
 
 // Whether `path` is a regular file that can be read and begins with these bytes.
 [[nodiscard]] bool file_starts_with(const std::string& path, std::string_view bytes);

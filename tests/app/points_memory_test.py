@@ -4,6 +4,7 @@ Peaks of memory are those of the report. A batch holds 262 144 points, or those 
 a slow writer's are compared from fewer than a batch on, a file's from several batches on.
 """
 
+import gzip
 import json
 import os
 import subprocess
@@ -50,15 +51,39 @@ class PointsOnStandardInput(unittest.TestCase):
         few = self.peak_from_a_file(1000)
         self.assertLessEqual(self.peak_from_a_file(3000), few + ALLOWED_BYTES)
 
-    def test_a_few_points_take_no_grid(self):
-        """The grid takes 250 bytes a face or more; a few points are looked for in all of them."""
-        side = 200
+    def make_mesh(self, side):
+        """2 side^2 triangles, of whose grid each takes 112 bytes at least, and 250 or more here."""
         with open(self.mesh, "w", encoding="utf-8") as file:
             file.writelines(f"v {i} {j} {i * j % 7}\n" for i in range(side + 1) for j in range(side + 1))
             corners = [i * (side + 1) + j + 1 for i in range(side) for j in range(side)]
             file.writelines(f"f {n} {n + 1} {n + side + 2} {n + side + 1}\n" for n in corners)
+
+    def test_a_few_points_take_no_grid(self):
+        """A few points are looked for in all faces."""
+        self.make_mesh(200)
         few, many = (self.peak(FROM_AWK, count, self.mesh) for count in (500, 10_000))
-        self.assertGreater(many - few, 200 * 2 * side**2)
+        self.assertGreater(many - few, 200 * 2 * 200**2)
+
+    def test_packed_points_may_be_many(self):
+        """Memory for a grid is asked for where it may be needed, and not of a file that is short for sure."""
+        self.make_mesh(500)
+        text = "".join(f"{i} {i} 0.5\n" for i in range(100)).encode()
+        packed = self.points + ".gz"
+        for name, content in (self.points, text), (packed, gzip.compress(text)):
+            with open(name, "wb") as file:
+                file.write(content)
+
+        def run(points, *options):
+            command = [RAYCONE, "points", self.mesh, points, "--quiet", "--report", self.report, *options]
+            return subprocess.run(command, capture_output=True, text=True, timeout=300, check=False)
+
+        self.assertEqual(run(self.points).returncode, 0)
+        with open(self.report, encoding="utf-8") as file:
+            limit = json.load(file)["peak_memory_bytes"] + (16 << 20)
+        self.assertEqual(run(self.points, "--memory-limit", str(limit)).returncode, 0)
+        refused = run(packed, "--memory-limit", str(limit))
+        self.assertEqual(refused.returncode, 4, refused.stderr)
+        self.assertRegex(refused.stderr, r"mesh\.obj: needs about \d+ MB of memory, but the limit is \d+ MB\n\Z")
 
 
 if __name__ == "__main__":

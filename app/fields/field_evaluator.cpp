@@ -41,7 +41,7 @@ FieldEvaluator::FieldEvaluator(TriangleMesh mesh, const FieldOptions& options, c
                                         .edges = edges}) {}
 
 void FieldEvaluator::prepare_points() const {
-  if (winding_number_.asked_accuracy().samples > static_cast<double>(kFewPoints)) winding_number_.prepare_points();
+  winding_number_.prepare_points(winding_number_.asked_accuracy().samples);
   if (distance_) distance_->prepare_points();
   if (solid_) solid_->prepare_points();
 }

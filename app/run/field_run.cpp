@@ -122,8 +122,9 @@ double memory_of_distances(std::uint64_t triangles, const FieldOptions& field) {
 
 void check_points_memory(const RunReport& report, const FieldOptions& field, double points, const RunLimits& limits) {
   constexpr double kPerTriangle = 112.0;  // of a grid, edge-on to the rays: its filters and footprints; 250 are common
-  const bool has_grid = field.engine == RayEngine::kScan && points > static_cast<double>(kFewPoints);
-  const double of_grid = has_grid ? kPerTriangle * static_cast<double>(report.faces) : 0.0;
+  const auto faces = static_cast<double>(report.faces);
+  const bool has_grid = field.engine == RayEngine::kScan && grid_pays_for_points(points, faces);
+  const double of_grid = has_grid ? kPerTriangle * faces : 0.0;
   check_memory(report.mesh, of_grid + memory_of_distances(report.faces, field), limits.memory());
 }
 

@@ -125,7 +125,7 @@ std::unique_ptr<PointWriter> open_writer(const PointsCommand& command, const Poi
 }
 
 void prepare(const PointsCommand& command, TriangleMesh mesh, LabelledParts* parts, MeshRun& run, PointWork& work) {
-  constexpr auto kFew = static_cast<double>(kFewPoints);
+  constexpr double kFew = 4096.0;
   constexpr double kMany = std::numeric_limits<double>::infinity();
   const std::optional<double> expected = expected_points(*work.reader, command.sample ? "-" : command.points);
   check_points_memory(run.report, command.field, expected.value_or(kMany), run.limits());

@@ -51,11 +51,12 @@ CoherentOrder::Keys CoherentOrder::keys_in_blocks(const ScaledMesh& mesh, const 
 // Embree's rays go in the order of the points: they are for comparison.
 CoherentOrder::Keys CoherentOrder::keys_along_curves(const ScaledMesh& mesh, std::span<const Vec3> points) {
   const ProjectedGrid* const grid = mesh.has_far_field() ? nullptr : mesh.grid_if_built();
-  const unsigned bits = points.size() > kFewPoints ? 7 : 4;  // of each axis; all places are gone through
+  constexpr std::size_t kFew = 4096;
+  const unsigned bits = points.size() > kFew ? 7 : 4;  // of each axis; all places are gone through
   Keys keys{!grid ? 1U << (3 * bits) : std::uint32_t{ProjectedGrid::kMortonCodes}, {}, true, {}};
   keys.of_points.resize(points.size());
   std::atomic<bool> all_taken = true;
-  const SpaceCurve curve(!grid ? bounding_box(mesh.mesh()) : empty_box(), bits);
+  const SpaceCurve curve(!grid ? mesh.box() : empty_box(), bits);
   const auto key_of = [&](const Vec3& q) -> std::uint32_t {
     return grid ? grid->morton_code(q) : static_cast<std::uint32_t>(curve.place(q));
   };
@@ -64,7 +65,7 @@ CoherentOrder::Keys CoherentOrder::keys_along_curves(const ScaledMesh& mesh, std
     bool taken = true;
     for (std::size_t i = begin; i < end; ++i) {
       taken = taken && mesh.can_take(points[i]);
-      keys.of_points[i] = mesh.options().ray_engine == RayEngine::kScan
+      keys.of_points[i] = mesh.options().ray_engine != RayEngine::kEmbree
                               ? key_of(mesh.to_scale(points[i]))
                               : static_cast<std::uint32_t>(i / (points.size() / keys.count + 1));
     }

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "core/crossings/few_rays.h"
-
 namespace raycone {
 
 Tally PointTile::evaluate(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
@@ -21,15 +19,14 @@ Tally PointTile::evaluate(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
 
 // First what is certain, then what predicates decide.
 void PointTile::find_crossings(const ScaledMesh& mesh) {
+  if (crossings_) return look_up();
   std::fill_n(degenerate_.begin(), count_, Degenerate{});
   if (mesh.options().ray_engine == RayEngine::kEmbree) {
     ask_embree(mesh);
-  } else if (const ProjectedGrid* const grid = mesh.grid_if_built()) {
-    doubtful_.clear();
-    grid->crossings({queries_.data(), count_}, {n_.data(), count_}, doubtful_);
-    for (const RayCandidate& candidate : doubtful_) decide(mesh, candidate);
   } else {
-    pass_over(mesh);
+    doubtful_.clear();
+    mesh.grid().crossings({queries_.data(), count_}, {n_.data(), count_}, doubtful_);
+    for (const RayCandidate& candidate : doubtful_) decide(mesh, candidate);
   }
 }
 
@@ -41,16 +38,12 @@ void PointTile::ask_embree(const ScaledMesh& mesh) {
   }
 }
 
-// Candidates may be many: they are not kept.
-void PointTile::pass_over(const ScaledMesh& mesh) {
-  static_assert(kTile <= kFewRays);
-  std::fill_n(n_.begin(), count_, 0);
-  std::uint64_t candidates = 0;
-  for_each_candidate(mesh.mesh(), {queries_.data(), count_}, [&](const RayCandidate& candidate) {
-    decide(mesh, candidate);
-    ++candidates;
-  });
-  mesh.count_pass(count_, candidates);
+void PointTile::look_up() {
+  for (std::size_t i = 0; i < count_; ++i) {
+    const std::size_t ray = rays_[i];
+    n_[i] = crossings_->n[ray];
+    degenerate_[i] = {crossings_->ties[ray], crossings_->on_surface[ray] != 0};
+  }
 }
 
 void PointTile::decide(const ScaledMesh& mesh, const RayCandidate& candidate) {

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <mutex>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/evaluation/coherent_order.h"
 #include "core/evaluation/meeting_rays.h"
+#include "core/evaluation/point_crossings.h"
 #include "core/evaluation/point_tile.h"
 #include "core/machine/threads.h"
 
@@ -22,14 +26,30 @@ void set_to_zero(std::size_t begin, std::size_t end, std::span<double> values, c
   if (diagnostics) diagnostics->part(begin, count).set_to_zero();
 }
 
+// The crossings, by a pass over the triangles, of those of the points point_at(n), n < count, that are to be had. None
+// where the mesh has another way to find them.
+template <class PointAt, class IsToBeHad>
+std::optional<PointCrossings> crossings_without_grid(const ScaledMesh& mesh, std::size_t count, const PointAt& point_at,
+                                                     const IsToBeHad& is_to_be_had) {
+  if (!takes_passes(mesh)) return std::nullopt;
+  std::vector<NumberedRay> rays;
+  rays.reserve(count);
+  for (std::uint32_t n = 0; n < count; ++n) {
+    const Vec3 q = point_at(n);
+    if (is_to_be_had(q)) rays.push_back({mesh.to_scale(q), n});
+  }
+  return crossings_by_pass(mesh, std::move(rays), count);
+}
+
+// Those from order[begin] to before order[end]; places in the order are the numbers of their rays.
 Tally evaluate_in_order(const ScaledMesh& mesh, std::span<const Vec3> points, std::span<const std::uint32_t> order,
-                        PointTile& tile) {
+                        std::size_t begin, std::size_t end, PointTile& tile) {
   constexpr std::size_t kAhead = 24;  // points that are fetched meanwhile
   Tally tally;
-  for (std::size_t n = 0; n < order.size(); ++n) {
+  for (std::size_t n = begin; n < end; ++n) {
     const Vec3& later = points[order[std::min(n + kAhead, order.size() - 1)]];
     __builtin_prefetch(&later);
-    tile.add(order[n], mesh.to_scale(points[order[n]]));
+    tile.add(order[n], mesh.to_scale(points[order[n]]), n);
     if (tile.full()) tally += tile.evaluate(mesh);
   }
   return tally += tile.evaluate(mesh);
@@ -48,6 +68,26 @@ class SharedTally {
   std::mutex mutex_;
   Tally total_;
 };
+
+// On all threads.
+Tally evaluate_all_in_order(const ScaledMesh& mesh, std::span<const Vec3> points, std::span<const std::uint32_t> order,
+                            const ValueOutputs& out, ScaledMesh::Settling settling) {
+  constexpr std::size_t kTogether = std::size_t{1} << 16, kPointsPerTask = 4096;
+  SharedTally tally;
+  mesh.prepare_points(static_cast<double>(order.size()));
+  for (std::size_t first = 0, count = 0; first < order.size(); first += count) {
+    count = std::min(kTogether, order.size() - first);
+    const std::span<const std::uint32_t> batch = order.subspan(first, count);
+    const auto crossings = crossings_without_grid(
+        mesh, count, [&](std::size_t n) { return points[batch[n]]; }, [](const Vec3&) { return true; });
+    parallel_for(count, kPointsPerTask, [&](std::size_t begin, std::size_t end) {
+      PointTile tile(out.values, out.diagnostics, settling, crossings ? &*crossings : nullptr);
+      tally.add(evaluate_in_order(mesh, points, batch, begin, end, tile));
+      out.count_done(end - begin);
+    });
+  }
+  return tally.total();
+}
 
 // How many points one thread puts in order together: many, so that neighbours are near, but some for each thread.
 std::size_t points_of_a_part(std::size_t points) {
@@ -69,34 +109,42 @@ Tally evaluate_closed(const ScaledMeshes& meshes, std::span<const Vec3> points, 
       const std::size_t begin = part * size, end = std::min(begin + size, points.size());
       set_to_zero(begin, end, out.values, out.diagnostics);
       const MeetingRays rays(scaled, points, begin, end);
-      tally.add(evaluate_in_order(scaled, points, rays.ordered(), tile));
+      tally.add(evaluate_in_order(scaled, points, rays.ordered(), 0, rays.ordered().size(), tile));
       others[part].assign(rays.others().begin(), rays.others().end());
       out.count_done(end - begin - others[part].size());
     }
   });
-  std::uint64_t left = 0;
-  for (const auto& part : others) left += part.size();
-  if (left == 0) return tally.total();
-  const ScaledMesh& unscaled = meshes.unscaled();
-  unscaled.prepare_points(left);
-  parallel_for(others.size(), 1, [&](std::size_t first, std::size_t last) {
-    PointTile tile(out.values, out.diagnostics, settling);
-    for (std::size_t part = first; part < last; ++part) {
-      tally.add(evaluate_in_order(unscaled, points, others[part], tile));
-      out.count_done(others[part].size());
-    }
-  });
-  return tally.total();
+  std::vector<std::uint32_t> all_others;
+  for (const auto& part : others) all_others.insert(all_others.end(), part.begin(), part.end());
+  Tally of_all = tally.total();
+  if (!all_others.empty()) of_all += evaluate_all_in_order(meshes.unscaled(), points, all_others, out, settling);
+  return of_all;
 }
 
 // ---- All meshes ------------------------------------------------------------------------------------------------
+
+// What the rays of a batch cross, where a pass over the triangles has told: of the points that the scaled mesh takes,
+// and of the others. By the points' numbers.
+struct BatchCrossings {
+  std::optional<PointCrossings> scaled, unscaled;
+
+  BatchCrossings(const ScaledMeshes& meshes, std::span<const Vec3> points, bool all_taken) {
+    const auto point_at = [&](std::size_t n) { return points[n]; };
+    const auto taken = [&](const Vec3& q) { return all_taken || meshes.scaled().can_take(q); };
+    scaled = crossings_without_grid(meshes.scaled(), points.size(), point_at, taken);
+    if (all_taken) return;
+    meshes.unscaled().prepare_points(static_cast<double>(std::ranges::count_if(points, std::not_fn(taken))));
+    unscaled = crossings_without_grid(meshes.unscaled(), points.size(), point_at, std::not_fn(taken));
+  }
+};
 
 // Points of a thread that are to be evaluated, by the mesh that takes them.
 struct Tiles {
   PointTile scaled, unscaled;
 
-  Tiles(const ValueOutputs& out, ScaledMesh::Settling settling)
-      : scaled(out.values, out.diagnostics, settling), unscaled(out.values, out.diagnostics, settling) {}
+  Tiles(const ValueOutputs& out, ScaledMesh::Settling settling, const BatchCrossings& crossings)
+      : scaled(out.values, out.diagnostics, settling, crossings.scaled ? &*crossings.scaled : nullptr),
+        unscaled(out.values, out.diagnostics, settling, crossings.unscaled ? &*crossings.unscaled : nullptr) {}
 };
 
 // What evaluates the points of a batch.
@@ -111,7 +159,7 @@ class BatchEvaluation {
       const bool exact = order_.all_taken() || meshes_.scaled().can_take(p.point);
       const ScaledMesh& mesh = meshes_.of_query(exact);
       PointTile& tile = exact ? tiles.scaled : tiles.unscaled;
-      tile.add(p.index, mesh.to_scale(p.point));
+      tile.add(p.index, mesh.to_scale(p.point), p.index);
       if (tile.full()) tally += tile.evaluate(mesh);
     }
     return tally;
@@ -132,7 +180,7 @@ class BatchEvaluation {
       }
       PointBlocks::Sums sums(blocks, key - 1);
       for (const CoherentOrder::SortedPoint& p : std::span(begin, end)) {
-        tiles.scaled.add(p.index, scaled.to_scale(p.point));
+        tiles.scaled.add(p.index, scaled.to_scale(p.point), p.index);
         if (tiles.scaled.full()) tally += tiles.scaled.evaluate(scaled, &sums);
       }
       tally += tiles.scaled.evaluate(scaled, &sums);
@@ -165,13 +213,13 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, c
                      ScaledMesh::Settling settling) {
   const ScaledMesh& scaled = meshes.scaled();
   const CoherentOrder order(scaled, points);
-  if (!order.all_taken()) meshes.unscaled().prepare_points(points.size());
   const BlocksOfPoints* const blocks = scaled.blocks_of_points();
   if (blocks) blocks->sums.prepare(order.groups());
+  const BatchCrossings crossings(meshes, points, order.all_taken());
   const BatchEvaluation batch(meshes, order);
   SharedTally total;
   parallel_for(CoherentOrder::kBuckets, buckets_of_a_part(points.size()), [&](std::size_t begin, std::size_t end) {
-    Tiles tiles(out, settling);
+    Tiles tiles(out, settling, crossings);
     Tally tally;
     for (std::size_t bucket = begin; bucket < end; ++bucket) {
       const auto sorted = order[bucket];
@@ -184,13 +232,6 @@ Tally evaluate_batch(const ScaledMeshes& meshes, std::span<const Vec3> points, c
   return total.total();
 }
 
-// How many points are evaluated together that are not of a closed mesh with a grid. What the first of those cost that
-// do without one tells whether it pays for the others.
-std::size_t batch_of(const ScaledMesh& mesh) {
-  const bool is_first = mesh.options().ray_engine == RayEngine::kScan && !mesh.grid_if_built() && !mesh.has_passed();
-  return is_first ? kTile * static_cast<std::size_t>(thread_count()) : CoherentOrder::batch(mesh);
-}
-
 }  // namespace
 
 Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, const ValueOutputs& out,
@@ -198,11 +239,11 @@ Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, 
   Tally total;
   const ScaledMesh& scaled = meshes.scaled();
   constexpr std::size_t kIndexable = std::size_t{1} << 31;
+  // Before the loops over points, within which threads would wait for one another.
+  scaled.prepare_points(static_cast<double>(points.size()));
   for (std::size_t begin = 0, count = 0; begin < points.size(); begin += count) {
-    // What the points need is built before the loops over them, within which threads would wait for one another.
-    scaled.prepare_points(points.size() - begin);
     const bool closed = scaled.is_closed() && scaled.grid_if_built() != nullptr;
-    count = std::min(closed ? kIndexable : batch_of(scaled), points.size() - begin);
+    count = std::min(closed ? kIndexable : CoherentOrder::batch(scaled), points.size() - begin);
     const Diagnostics diagnostics = out.diagnostics ? out.diagnostics->part(begin, count) : Diagnostics{};
     const ValueOutputs of_batch{out.values.subspan(begin, count), out.done, out.diagnostics ? &diagnostics : nullptr};
     total += (closed ? evaluate_closed : evaluate_batch)(meshes, points.subspan(begin, count), of_batch, settling);

@@ -46,7 +46,7 @@ ScaledRows scaled_rows(const ScaledMeshes& meshes, const Lattice& lattice, const
 
 void collect_crossings(const ScaledRows& part, LatticeSums& sums) {
   const ScaledMesh& mesh = part.mesh;
-  if (mesh.options().ray_engine == RayEngine::kScan) {
+  if (mesh.options().ray_engine != RayEngine::kEmbree) {
     scan_triangles(mesh.mesh(), part.rows, ordered_slab(mesh, part.lattice, part.block), sums);
   } else {
     (void)mesh.rays();  // not within the loop over rows, whose threads would wait for one another

@@ -1,6 +1,7 @@
 #include "core/evaluation/scaled_mesh.h"
 
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/boundary/cone.h"
@@ -44,6 +45,10 @@ ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const Evaluat
 
 TriangleMesh ScaledMesh::unscaled_mesh() const { return in_scale(mesh_, inverse_); }
 
+const Box& ScaledMesh::box() const {
+  return box_.get([this] { return bounding_box(mesh_); });
+}
+
 const RayCaster& ScaledMesh::rays() const {
   return rays_.get([this] { return RayCaster(mesh_); });
 }
@@ -58,9 +63,8 @@ const SlabOrder& ScaledMesh::slab_order(int axis) const {
 
 const Caps& ScaledMesh::caps() const {
   constexpr double kNarrow = 0x1p-7;  // of the mesh's size: a voxel or some
-  return caps_.get([this] {
-    return counts_crossings() ? make_caps(boundary_, kNarrow * longest_side(bounding_box(mesh_))) : Caps();
-  });
+  return caps_.get(
+      [this] { return counts_crossings() ? make_caps(boundary_, kNarrow * longest_side(box())) : Caps(); });
 }
 
 const ChangeBound& ScaledMesh::change_bound() const {
@@ -79,9 +83,8 @@ const Blocks& ScaledMesh::blocks() const {
 namespace {
 
 // Larger than the mesh's, as points that are drawn for it often are.
-Box box_for_points(const TriangleMesh& mesh) {
+Box box_for_points(const Box& box) {
   constexpr double kMargin = 0x1p-4;
-  const Box box = bounding_box(mesh);
   return widened(box, kMargin * longest_side(box));
 }
 
@@ -91,7 +94,7 @@ Box box_for_points(const TriangleMesh& mesh) {
 std::unique_ptr<const BlocksOfPoints> ScaledMesh::make_blocks_of_points() const {
   if (!choice_.blocks_of_points_may_pay() || !blocks().are_sound) return nullptr;
   std::unique_ptr<const BlocksOfPoints> result(new BlocksOfPoints{
-      CapCrossings(caps().mesh), PointBlocks(blocks().sums, box_for_points(mesh_), options_.accuracy.points)});
+      CapCrossings(caps().mesh), PointBlocks(blocks().sums, box_for_points(box()), options_.accuracy.points)});
   const double direct = choice_.direct_cost();
   const double other = has_far_field() ? std::min(direct, far_field()->cost()) : direct;
   return choice_.blocks_of_points_pay(result->sums.cost(), other) ? std::move(result) : nullptr;
@@ -141,33 +144,45 @@ const FarField* ScaledMesh::far_field_for(std::size_t samples) const {
   return far_field_without_waiting();
 }
 
-void ScaledMesh::count_pass(std::uint64_t points, std::uint64_t candidates) const {
-  passes_.fetch_add(1, std::memory_order_relaxed);
-  passed_points_.fetch_add(points, std::memory_order_relaxed);
-  candidates_.fetch_add(candidates, std::memory_order_relaxed);
+namespace {
+
+constexpr std::uint64_t kGridEffort = 120;  // of building a grid, for each triangle: 0.5 to 0.8 us
+constexpr std::uint64_t kPatience = 144;    // a little more, lest passes that were estimated to be cheaper be in vain
+
+// What passes over the triangles take for so many points, about: of many, each triangle looks at a row or two of bins,
+// which are in no cache; each ray is looked at by some triangles, and four of these are decided about.
+double effort_of_passes(double points, double triangles) {
+  constexpr double kPointsOfPass = 65'536.0, kTriangle = 12.0, kRay = 75.0;
+  return kTriangle * std::ceil(points / kPointsOfPass) * triangles + kRay * points;
 }
 
-// Without it each tile of points takes a pass over the triangles, and each candidate as long as some of these. Nobody
-// knows how many points will come: it is built once this takes about as long as building it, so that a few points do
-// not wait for it, and many wait about twice as long at most.
-bool ScaledMesh::grid_pays(std::uint64_t points) const {
-  constexpr double kPasses = static_cast<double>(kFewPoints) / kTile, kTrianglesPerCandidate = 5.0;
-  if (grid_.if_built() || points > kFewPoints) return true;
-  const auto passed = static_cast<double>(passed_points_.load(std::memory_order_relaxed));
-  const auto candidates = static_cast<double>(candidates_.load(std::memory_order_relaxed));
-  const auto more = static_cast<double>(points);
-  const double passes = static_cast<double>(passes_.load(std::memory_order_relaxed)) + std::ceil(more / kTile);
-  const double all_candidates = passed > 0.0 ? candidates * (1.0 + more / passed) : 0.0;
+}  // namespace
+
+bool grid_pays_for_points(double points, double triangles) {
+  return effort_of_passes(points, triangles) > kGridEffort * triangles;
+}
+
+std::uint64_t ScaledMesh::effort_left() const {
+  if (options_.ray_engine == RayEngine::kPasses) return std::numeric_limits<std::uint64_t>::max();
+  const std::uint64_t most = kPatience * mesh_.triangles.size();
+  const std::uint64_t spent = passes_effort_.load(std::memory_order_relaxed);
+  return spent < most ? most - spent : 0;
+}
+
+// Nobody knows how many points will come: the grid is built once passes take about as long as building it, so that some
+// points do not wait for it, and many wait about twice as long at most.
+bool ScaledMesh::grid_pays(double points) const {
   const auto triangles = static_cast<double>(mesh_.triangles.size());
-  return passes + kTrianglesPerCandidate * all_candidates / triangles > kPasses;
+  return grid_.if_built() || grid_pays_for_points(points, triangles) ||
+         effort_of_passes(points, triangles) > static_cast<double>(effort_left());
 }
 
-void ScaledMesh::prepare_points(std::uint64_t points) const {
+void ScaledMesh::prepare_points(double points) const {
   if (!options_.accuracy.sides_only) (void)has_far_field();
   (void)blocks_of_points();
   if (options_.ray_engine == RayEngine::kEmbree) {
     (void)rays();
-  } else if (grid_pays(points)) {
+  } else if (options_.ray_engine == RayEngine::kScan && grid_pays(points)) {
     (void)grid();
   }
 }

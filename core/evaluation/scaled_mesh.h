@@ -17,6 +17,7 @@
 #include "core/crossings/ray_caster.h"
 #include "core/crossings/row.h"
 #include "core/crossings/slab_order.h"
+#include "core/data/box.h"
 #include "core/data/triangle_mesh.h"
 #include "core/evaluation/summation_choice.h"
 #include "core/evaluation/winding_number.h"
@@ -57,6 +58,7 @@ class ScaledMesh {
   // Whether no coordinate exceeds 1, as bounds of far fields, blocks and changes need. A mesh that spans more than
   // 2^1020 cannot be scaled so.
   [[nodiscard]] bool is_in_scale() const { return is_in_scale_; }
+  [[nodiscard]] const Box& box() const;  // of the triangles
 
   // The mesh as it was given: the scaling lost nothing.
   [[nodiscard]] TriangleMesh unscaled_mesh() const;
@@ -85,10 +87,12 @@ class ScaledMesh {
   // None where there are too few points for it. Only before loops over points.
   [[nodiscard]] const BlocksOfPoints* blocks_of_points() const;
   // Builds what points need, the grid of rays only if it pays for so many more of them. Only before loops over points.
-  void prepare_points(std::uint64_t points) const;
-  // A pass over the triangles in place of a grid (few_rays.h), for so many points, has found so many candidates.
-  void count_pass(std::uint64_t points, std::uint64_t candidates) const;
-  [[nodiscard]] bool has_passed() const { return passes_.load(std::memory_order_relaxed) > 0; }
+  void prepare_points(double points) const;
+
+  // A pass over the triangles in place of the grid (point_crossings.h) has taken so much effort; one is 5 to 10 ns.
+  void count_pass(std::uint64_t effort) const { passes_effort_.fetch_add(effort, std::memory_order_relaxed); }
+  // How much more passes may take until they have taken as long as building the grid.
+  [[nodiscard]] std::uint64_t effort_left() const;
 
   // What follows takes queries in the scale.
 
@@ -150,7 +154,7 @@ class ScaledMesh {
   [[nodiscard]] const FarField* far_field_without_waiting() const;
   [[nodiscard]] std::unique_ptr<const BlocksOfPoints> make_blocks_of_points() const;
   // Whether the grid of rays pays, for so many more points.
-  [[nodiscard]] bool grid_pays(std::uint64_t points) const;
+  [[nodiscard]] bool grid_pays(double points) const;
   void set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
                                     std::span<double> values, double doubt) const;
 
@@ -166,8 +170,9 @@ class ScaledMesh {
   std::unique_ptr<const WindingNumberEngine> direct_;  // none where the mesh is closed
   SummationChoice choice_;                             // refers to boundary_
   mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
-  mutable std::atomic<std::uint64_t> passes_ = 0, passed_points_ = 0, candidates_ = 0;  // of passes over triangles
+  mutable std::atomic<std::uint64_t> passes_effort_ = 0;
   mutable std::atomic_flag far_is_taken_;
+  BuiltOnce<Box> box_;
   BuiltOnce<RayCaster> rays_;
   BuiltOnce<ProjectedGrid> grid_;
   std::array<BuiltOnce<SlabOrder>, 2> slab_orders_;

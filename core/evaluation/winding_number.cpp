@@ -97,10 +97,10 @@ void WindingNumberEvaluator::settle(std::span<const Vec3> points, double critica
   settler.evaluate();
 }
 
-void WindingNumberEvaluator::prepare_points() const {
+void WindingNumberEvaluator::prepare_points(double points) const {
   const DefaultFloatingPoint guard;
   const ScaledMesh& scaled = implementation_->scaled();
-  if (!scaled.mesh().triangles.empty()) scaled.prepare_points(std::numeric_limits<std::uint64_t>::max());
+  if (!scaled.mesh().triangles.empty()) scaled.prepare_points(points);
 }
 
 Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,

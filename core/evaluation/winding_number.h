@@ -10,6 +10,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
@@ -36,7 +37,8 @@ struct Tally {
 
 // How to find the triangles along a ray. Values do not depend on it.
 enum class RayEngine {
-  kScan,    // lattices: scan conversion; points: a grid over the projected triangles
+  kScan,    // triangles look for rays: those of a lattice, or of points; of many points, rays look into a grid
+  kPasses,  // for tests: the same without the grid
   kEmbree,  // Embree for all
 };
 
@@ -55,7 +57,6 @@ struct ExteriorEdge;
 inline constexpr double kLeastTolerance = 1e-12;          // turns; less counts as 0
 inline constexpr double kAgreeingRounding = 1.6e-14;      // turns per edge: see error_of_agreeing_roundings()
 inline constexpr double kLeastToleranceOfBlocks = 1e-11;  // below, fits would round too much
-inline constexpr std::uint64_t kFewPoints = 4096;         // searching all triangles for them takes as long as a grid
 
 // How well values are to be known.
 struct Accuracy {
@@ -76,6 +77,10 @@ struct Accuracy {
 // The tolerance that sides of a rule are cheapest with, turns. With a larger one far more values would be close to a
 // threshold, and those are summed again: many at once near half-integers, near others one by one.
 [[nodiscard]] double tolerance_for_sides(const Rule& rule);
+
+// Whether a search structure pays for so many points, of a mesh of so many triangles. Without one, each hundred
+// thousand points take a pass over the triangles.
+[[nodiscard]] bool grid_pays_for_points(double points, double triangles);
 
 // What values took: pairs of a sample with an edge or a triangle, and with a multipole, which stands for many.
 struct Terms {
@@ -136,9 +141,9 @@ class WindingNumberEvaluator {
   // hundred times sooner where most of them are so near, as in a search for the places where w is one.
   void evaluate_unsettled(std::span<const Vec3> points, std::span<double> values) const;
 
-  // Builds the search structure that many points need and lattices may not. Without this call, the evaluation builds it
-  // with which more than kFewPoints have come, or fewer in small portions.
-  void prepare_points() const;
+  // Prepares what points need and lattices may not: for so many that it pays, a search structure. Without this call,
+  // the evaluation builds it with which enough points have come, or fewer in small portions.
+  void prepare_points(double points = std::numeric_limits<double>::infinity()) const;
 
   // Sets for each sample of a block of `lattice` only whether `rule` holds, 1, or not, 0: exactly. In a small part of
   // the time, if the evaluator was made for that: with accuracy {.tolerance = tolerance_for_sides(rule), .sides_only =

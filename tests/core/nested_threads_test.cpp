@@ -104,7 +104,7 @@ TEST(ParallelFor, PassesExceptionsOnFromLoopsWithinLoops) {
 
 TEST(NestedThreads, PointsOfANewEvaluatorFindItsGridBuilt) {
   const Watchdog watchdog("evaluating points");
-  const std::vector<Vec3> points = points_about(20'000);
+  const std::vector<Vec3> points = points_about(150'000);  // of fewer, passes over the triangles would find all
   std::vector<double> values(points.size());
   for (const RayEngine engine : {RayEngine::kScan, RayEngine::kEmbree}) {
     for (int repetition = 0; repetition < kRepetitions / 2; ++repetition) {

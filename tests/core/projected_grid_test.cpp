@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/crossings/binned_rays.h"
 #include "core/crossings/crossings.h"
-#include "core/crossings/few_rays.h"
 #include "core/machine/floating_point.h"
 #include "tests/support/shapes.h"
 
@@ -62,13 +62,17 @@ std::vector<Found> by_grid(const ProjectedGrid& grid, const TriangleMesh& mesh, 
   return found;
 }
 
-// What passes over the triangles find.
-std::vector<Found> by_passes(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
+// What a pass over the triangles finds.
+std::vector<Found> by_pass(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
+  std::vector<NumberedRay> rays;
+  for (std::uint32_t i = 0; i < queries.size(); ++i) rays.push_back({queries[i], i});
+  const BinnedRays binned(rays);
   std::vector<Found> found(queries.size());
-  for (std::size_t first = 0; first < queries.size(); first += kFewRays) {
-    const std::span<const Vec3> few = std::span(queries).subspan(first, std::min(kFewRays, queries.size() - first));
-    for_each_candidate(mesh, few, [&](const RayCandidate& candidate) {
-      found[first + candidate.query].add(mesh, candidate.triangle, few[candidate.query]);
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto [a, b, c] = mesh.triangles[t];
+    binned.for_each_met(box_of(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]), [&](const NumberedRay& ray) {
+      EXPECT_EQ(ray.origin, queries[ray.number]);
+      found[ray.number].add(mesh, t, ray.origin);
     });
   }
   return found;
@@ -77,14 +81,14 @@ std::vector<Found> by_passes(const TriangleMesh& mesh, const std::vector<Vec3>& 
 Totals check(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
   const DefaultFloatingPoint guard;
   const ProjectedGrid grid(mesh);
-  const std::vector<Found> all_found = by_grid(grid, mesh, queries), found_by_passes = by_passes(mesh, queries);
+  const std::vector<Found> all_found = by_grid(grid, mesh, queries), found_by_pass = by_pass(mesh, queries);
   std::vector<ProjectedGrid::Place> places(queries.size());
   grid.find_places(queries, places);
   Totals totals;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const Vec3& q = queries[i];
     const Found &found = all_found[i], expected = by_all_triangles(mesh, q);
-    EXPECT_TRUE(found_by_passes[i].same_as(expected)) << "passes at " << q.x << ' ' << q.y << ' ' << q.z;
+    EXPECT_TRUE(found_by_pass[i].same_as(expected)) << "a pass at " << q.x << ' ' << q.y << ' ' << q.z;
     const bool same = found.same_as(expected);
     EXPECT_TRUE(same) << found.n << " for " << expected.n << ", ties " << found.ties << " for " << expected.ties
                       << " at " << q.x << ' ' << q.y << ' ' << q.z;
@@ -199,33 +203,6 @@ TEST(ProjectedGrid, LeavesFewDecisionsToPredicates) {
   const Totals totals = check(mesh, queries);
   EXPECT_GT(totals.crossed, 800U);
   EXPECT_LT(totals.decided, queries.size() / 50);
-}
-
-// Some share a coordinate, some are as far apart as numbers go.
-TEST(FewRays, FindWhatAllTrianglesSayHoweverTheyLie) {
-  constexpr double l = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
-  test::Random random(7);
-  const TriangleMesh mesh = test::random_cells(random, 4);
-  const auto crossed = [&](const std::vector<Vec3>& queries) {
-    const std::vector<Found> found = by_passes(mesh, queries);
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < queries.size(); ++i) {
-      EXPECT_TRUE(found[i].same_as(by_all_triangles(mesh, queries[i]))) << i;
-      count += found[i].n != 0 ? 1 : 0;
-    }
-    return count;
-  };
-  for (const double far : {0.0, least, 1e-320, 1e-310, 1e-17, 1.0, 1e17, 1e300, l}) {
-    std::vector<Vec3> queries;
-    for (int i = 0; i < 60; ++i) {
-      const Vec3 q = test::uniform_point(random, {{-1, 0, 0}, {4, 4, 4}});
-      queries.push_back({q.x, i % 2 == 0 ? q.y : far, i % 3 == 0 ? 0.5 : q.z});
-    }
-    queries.insert(queries.end(), {{-far, far, -far}, {far, -far, far}, {-l, 0.5, 0.5}, {far, 0.5, 0.5}});
-    EXPECT_GT(crossed(queries), 5U) << far;
-    crossed(std::vector<Vec3>(kFewRays, queries.front()));
-    crossed({queries.back()});
-  }
 }
 
 // Next to a cell whose triangles reach far are others whose triangles do not: rays that start just before one of them.

@@ -79,7 +79,11 @@ MUTANTS = [
     Mutant("grid_misses_rays", "rays that meet nothing are told by all cells that they may be in", [
         ("core/crossings/projected_grid.cpp", "at(((square + 1) << coarser_) + kMargin)", "at(square << coarser_)")]),
     Mutant("passes_miss_rays", "a pass finds rays in the last bin that a triangle reaches, too", [
-        ("core/crossings/few_rays.cpp", "below_[bin(upper) + 1] & ~", "below_[bin(upper)] & ~")]),
+        ("core/crossings/binned_rays.h", "begins_[row * y_.bins + last + 1];", "begins_[row * y_.bins + last];")]),
+    Mutant("pass_leaves_out_the_far_box", "a ray that begins behind the mesh is left out, no other", [
+        ("core/evaluation/point_crossings.cpp", "return !ray.meets(mesh.box());", "return !ray.meets(mesh.box()) || ray.origin.x < mesh.box().lower.x;")]),
+    Mutant("pass_gives_up_in_silence", "a pass that would take longer than a grid is not used", [
+        ("core/evaluation/point_crossings.cpp", "if (!patience.is_lost()) return", "if (patience.effort() > 0) return")]),
     Mutant("sections_without_lines", "a long triangle concerns the rows on the lines of its edges, too", [
         ("core/crossings/triangle_sections.h", "  std::sort(parts.begin(),", "  parts[0] = parts[1] = parts[2] = nothing;\n  std::sort(parts.begin(),")]),
     Mutant("sections_without_error", "where a line is, is known up to rounding", [

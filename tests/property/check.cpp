@@ -16,19 +16,15 @@ namespace {
 
 using Quad = __float128;
 
-// How the triangles that rays cross are found.
-enum class Search { kPasses, kGrid, kEmbree };
-
-std::vector<Answer> evaluate(const TriangleMesh& mesh, Search search, Summation summation,
+std::vector<Answer> evaluate(const TriangleMesh& mesh, RayEngine engine, Summation summation,
                              const std::vector<Vec3>& queries, bool& closed) {
   const std::size_t n = queries.size();
   std::vector<double> values(n), bounds(n);
   std::vector<std::int64_t> crossings(n), degenerate(n);
   std::vector<std::uint8_t> on_surface(n);
   const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
-  const RayEngine engine = search == Search::kEmbree ? RayEngine::kEmbree : RayEngine::kScan;
   const WindingNumberEvaluator evaluator(mesh, {.ray_engine = engine, .summation = summation});
-  if (search != Search::kPasses) evaluator.prepare_points();
+  evaluator.prepare_points();
   evaluator.evaluate(queries, values, nullptr, &diagnostics);
   closed = evaluator.exterior_edges() == 0;
   std::vector<Answer> answers;
@@ -193,10 +189,10 @@ std::optional<std::string> wrong_answer(const TriangleMesh& mesh, const Vec3& q,
 std::vector<Answers> answers_of(const TriangleMesh& welded, const std::vector<Vec3>& queries) {
   const DefaultFloatingPoint guard;
   bool closed = false;
-  const std::vector<Answer> grid = evaluate(welded, Search::kGrid, Summation::kCone, queries, closed);
-  const std::vector<Answer> passes = evaluate(welded, Search::kPasses, Summation::kCone, queries, closed);
-  const std::vector<Answer> embree = evaluate(welded, Search::kEmbree, Summation::kCone, queries, closed);
-  const std::vector<Answer> triangles = evaluate(welded, Search::kGrid, Summation::kTriangles, queries, closed);
+  const std::vector<Answer> grid = evaluate(welded, RayEngine::kScan, Summation::kCone, queries, closed);
+  const std::vector<Answer> passes = evaluate(welded, RayEngine::kPasses, Summation::kCone, queries, closed);
+  const std::vector<Answer> embree = evaluate(welded, RayEngine::kEmbree, Summation::kCone, queries, closed);
+  const std::vector<Answer> triangles = evaluate(welded, RayEngine::kScan, Summation::kTriangles, queries, closed);
   std::vector<Answers> answers;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     answers.push_back({queries[i], grid[i], passes[i], embree[i], triangles[i], closed});

@@ -1,0 +1,98 @@
+#include "core/evaluation/point_crossings.h"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+#include "core/machine/threads.h"
+
+namespace raycone {
+namespace {
+
+void decide(const ScaledMesh& mesh, std::uint32_t triangle, const NumberedRay& ray, PointCrossings& crossings) {
+  const Vec3& q = ray.origin;
+  const TriangleCrossing crossing = mesh.crossing(triangle, {q.y, q.z, {&q.x, 1}});
+  const auto add = [](std::int64_t& sum, std::int64_t term) {
+    std::atomic_ref(sum).fetch_add(term, std::memory_order_relaxed);
+  };
+  if (crossing.crossed > 0) add(crossings.n[ray.number], crossing.sigma);
+  if (crossing.met > 0) add(crossings.ties[ray.number], crossing.ties);
+  if (crossing.on_begin < crossing.on_end) {
+    std::atomic_ref(crossings.on_surface[ray.number]).store(1, std::memory_order_relaxed);
+  }
+}
+
+// Of the triangles [begin, end), up to the first one at which more effort than `most` has been taken; how much has.
+std::uint64_t pass_over(const ScaledMesh& mesh, std::size_t begin, std::size_t end, const BinnedRays& rays,
+                        std::uint64_t most, PointCrossings& crossings) {
+  constexpr std::uint64_t kTriangle = 3, kDecided = 4;  // effort, where a look at a ray or a row of bins is 1
+  std::uint64_t effort = 0;
+  const TriangleMesh& all = mesh.mesh();
+  for (std::size_t t = begin; t < end && effort <= most; ++t) {
+    const Triangle& corners = all.triangles[t];
+    const Box box = box_of(all.vertices[corners[0]], all.vertices[corners[1]], all.vertices[corners[2]]);
+    const std::size_t looked = rays.for_each_met(box, [&](const NumberedRay& ray) {
+      decide(mesh, static_cast<std::uint32_t>(t), ray, crossings);
+      effort += kDecided;
+    });
+    effort += kTriangle + looked;
+  }
+  return effort;
+}
+
+// How much effort a pass may take until it is given up. At each time that is what is due for the triangles so far, and
+// an eighth of the whole: what would take far too long is given up soon. Thread-safe.
+class Patience {
+ public:
+  Patience(std::uint64_t most, std::size_t triangles)
+      : most_(static_cast<double>(most)), triangles_(static_cast<double>(triangles)) {}
+
+  // What may be taken for so many triangles more; 0: the pass has been given up.
+  [[nodiscard]] std::uint64_t for_more(std::size_t triangles) {
+    constexpr double kAtOnce = 0.125;
+    const auto begun = static_cast<double>(begun_.fetch_add(triangles, std::memory_order_relaxed) + triangles);
+    const double due = most_ * (kAtOnce + begun / triangles_) - static_cast<double>(effort());
+    if (!(due >= 1.0)) lost_.store(true, std::memory_order_relaxed);
+    return is_lost() ? 0 : static_cast<std::uint64_t>(std::min(due, 0x1p63));
+  }
+
+  // Effort that was taken, of what was allowed.
+  void count(std::uint64_t effort, std::uint64_t allowed) {
+    effort_.fetch_add(effort, std::memory_order_relaxed);
+    if (effort > allowed) lost_.store(true, std::memory_order_relaxed);
+  }
+
+  [[nodiscard]] bool is_lost() const { return lost_.load(std::memory_order_relaxed); }
+  [[nodiscard]] std::uint64_t effort() const { return effort_.load(std::memory_order_relaxed); }
+
+ private:
+  double most_, triangles_;
+  std::atomic<std::size_t> begun_ = 0;
+  std::atomic<std::uint64_t> effort_ = 0;
+  std::atomic<bool> lost_ = false;
+};
+
+}  // namespace
+
+bool takes_passes(const ScaledMesh& mesh) {
+  return mesh.options().ray_engine != RayEngine::kEmbree && !mesh.grid_if_built();
+}
+
+std::optional<PointCrossings> crossings_by_pass(const ScaledMesh& mesh, std::vector<NumberedRay> rays,
+                                                std::size_t count) {
+  constexpr std::size_t kTrianglesPerTask = 1024;
+  std::erase_if(rays, [&](const NumberedRay& ray) { return !ray.meets(mesh.box()); });
+  const BinnedRays binned(std::move(rays));
+  PointCrossings crossings(count);
+  Patience patience(mesh.effort_left(), mesh.mesh().triangles.size());
+  parallel_for(mesh.mesh().triangles.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
+    const std::uint64_t allowed = patience.for_more(end - begin);
+    if (allowed > 0) patience.count(pass_over(mesh, begin, end, binned, allowed, crossings), allowed);
+  });
+  mesh.count_pass(patience.effort());
+  if (!patience.is_lost()) return crossings;
+  (void)mesh.grid();
+  return std::nullopt;
+}
+
+}  // namespace raycone

@@ -69,9 +69,7 @@ std::unique_ptr<PointReader> draw_points(const std::string& name, const Triangle
                                          const SampleRequest& request, bool single) {
   const Box box = widened(request.bounds.value_or(bounding_box(mesh)), request.padding);
   PointSampler sampler(mesh, box, request.groups, request.seed);
-  const bool surface = std::ranges::any_of(
-      request.groups, [](const SampleGroup& group) { return !std::holds_alternative<UniformSamples>(group); });
-  if (surface && !sampler.has_area())
+  if (!sampler.has_needed_area())
     throw InputError(name + ": no triangle has an area, expected a surface to draw from");
   if (!sampler.is_finite())
     throw LimitError(name + ": box or noise is too large, expected points within double precision; see --scale");

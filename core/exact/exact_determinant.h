@@ -67,7 +67,8 @@ inline void add_product(ExactSum& sum, const Difference& x, const Difference& y,
 }
 
 // The same as determinant(), rounded to double then, and never -0. 106 bits are enough unless it lies next to the
-// middle between two doubles, cancels nearly, or comes near to underflow (NaN and infinity fail the tests, too).
+// middle between two doubles, cancels nearly, or comes near to underflow (NaN and infinity fail the tests, too). It is
+// 0 for sure where the differences are doubles and their products, then exact, are the same.
 [[nodiscard]] inline double rounded_determinant(const Difference& a, const Difference& b, const Difference& c,
                                                 const Difference& d) {
   const auto exactly = [](const Difference& x) { return exact_sum(x.plus, x.minus); };
@@ -78,8 +79,10 @@ inline void add_product(ExactSum& sum, const Difference& x, const Difference& y,
   constexpr double kLeast = 0x1p-850;    // nothing that matters underflows
   const bool is_sure = sum.high + (sum.low + error) == sum.high && sum.high + (sum.low - error) == sum.high;
   const bool has_no_terms = (of_a.high == 0.0 || of_d.high == 0.0) && (of_b.high == 0.0 || of_c.high == 0.0);
+  const bool is_zero = of_a.low == 0.0 && of_b.low == 0.0 && of_c.low == 0.0 && of_d.low == 0.0 && ad.high == bc.high &&
+                       ad.low == bc.low;
   const bool in_range = terms > kLeast || has_no_terms;
-  return (is_sure && in_range ? sum.high : static_cast<double>(determinant(a, b, c, d))) + 0.0;
+  return ((is_sure || is_zero) && in_range ? sum.high : static_cast<double>(determinant(a, b, c, d))) + 0.0;
 }
 
 // (a - q) x (b - q), each component as rounded_determinant().

@@ -1,6 +1,7 @@
 #include "core/sampling/point_sampler.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -22,10 +23,16 @@ std::uint64_t count_of(const SampleGroup& group) {
 struct AreaVector {
   long double x, y, z;
 };
+// Whether no coordinate has bits below 2^-453, so that products of differences have none below 2^-906.
+bool has_no_tiny_bits(const Vec3& p) {
+  return std::ranges::all_of(std::array{p.x, p.y, p.z}, [](double x) { return x == 0.0 || std::abs(x) > 0x1p-400; });
+}
+
 AreaVector area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 rounded = rounded_cross_of_differences(b, c, a);
   const double largest = largest_coordinate(rounded);
   if (largest > 0x1p-900 && largest < 0x1p1000) return {rounded.x, rounded.y, rounded.z};
+  if (largest == 0.0 && has_no_tiny_bits(a) && has_no_tiny_bits(b) && has_no_tiny_bits(c)) return {0, 0, 0};
   const QuadVec3 v = cross_of_differences(b, c, a);
   return {static_cast<long double>(v.x), static_cast<long double>(v.y), static_cast<long double>(v.z)};
 }
@@ -75,7 +82,7 @@ std::size_t step_of(double area, const std::vector<double>& areas) {
 
 std::vector<std::uint32_t> first_beyond_steps(const std::vector<double>& areas) {
   std::vector<std::uint32_t> first(areas.size() + 1, 0);
-  if (areas.back() <= 0.0) return first;
+  if (areas.empty() || areas.back() <= 0.0) return first;
   std::size_t step = 0;
   for (std::uint32_t n = 0; n < areas.size(); ++n) {
     // All areas of the steps before that of areas[n] are less.
@@ -83,6 +90,11 @@ std::vector<std::uint32_t> first_beyond_steps(const std::vector<double>& areas) 
       first[step + 1] = n;
   }
   return first;
+}
+
+bool any_needs_area(const std::vector<SampleGroup>& groups) {
+  return std::ranges::any_of(groups,
+                             [](const SampleGroup& group) { return !std::holds_alternative<UniformSamples>(group); });
 }
 
 double diagonal_of(const TriangleMesh& mesh) {
@@ -101,7 +113,7 @@ PointSampler::PointSampler(const TriangleMesh& mesh, const Box& box, std::vector
       diagonal_(diagonal_of(mesh)),
       groups_(std::move(groups)),
       seed_(seed),
-      areas_(areas_up_to(mesh)),
+      areas_(any_needs_area(groups_) ? areas_up_to(mesh) : std::vector<double>()),
       first_beyond_(first_beyond_steps(areas_)) {
   for (const SampleGroup& group : groups_) size_ += count_of(group);
 }

@@ -31,14 +31,14 @@ class PointSampler {
   PointSampler(const TriangleMesh& mesh, const Box& box, std::vector<SampleGroup> groups, std::uint64_t seed);
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  // Whether there is a surface to draw from: not all triangles are degenerate.
-  [[nodiscard]] bool has_area() const { return areas_.back() > 0.0; }
+  // Whether there is a surface to draw from, if a group needs one: not all triangles are degenerate.
+  [[nodiscard]] bool has_needed_area() const { return areas_.empty() || areas_.back() > 0.0; }
 
   // Whether every point is finite: no box and no noise is so large that coordinates overflow.
   [[nodiscard]] bool is_finite() const;
 
-  // The points number first to first + points.size() - 1, up to size(). Needs is_finite(), and has_area() for points
-  // on or near a surface. With sigma 0 they lie in their triangle's box, and in its plane but for a few u of its
+  // The points number first to first + points.size() - 1, up to size(). Needs is_finite() and
+  // has_needed_area(). With sigma 0 they lie in their triangle's box, and in its plane but for a few u of its
   // coordinates. Faces without area have no points. Uses the threads that ThreadLimit allows.
   void draw(std::uint64_t first, std::span<Vec3> points) const;
   // The same, with the number of the triangle that each point of SurfaceSamples lies on; -1 of other groups.
@@ -64,7 +64,7 @@ class PointSampler {
   std::vector<SampleGroup> groups_;
   std::uint64_t seed_;
   std::uint64_t size_ = 0;
-  std::vector<double> areas_;  // of the triangles up to each, in some unit
+  std::vector<double> areas_;  // of the triangles up to each, in some unit; none where no group needs them
   // The areas cut into equal steps, as many as triangles: at each step the first triangle that reaches beyond it.
   std::vector<std::uint32_t> first_beyond_;
 };

@@ -50,6 +50,23 @@ TEST_F(ExactDeterminant, IsRightWhereItCancels) {
   }
 }
 
+// As of faces of no area: rows that are parallel, or but for the last bit of a number.
+TEST_F(ExactDeterminant, IsRightWhereItCancelsAtAllMagnitudes) {
+  std::size_t zeros = 0;
+  for (const int least : {-600, -560, -430, -300, 0, 400}) {
+    exponent_ = std::uniform_int_distribution<int>(least, least + 60);
+    for (int i = 0; i < 20'000; ++i) {
+      const auto few_bits = [&] { return static_cast<double>(static_cast<float>(number())); };
+      const double x = few_bits(), y = few_bits(), s = static_cast<double>(1 + random_() % 7);
+      const double last = i % 3 == 0 ? s * y : std::nextafter(s * y, i % 3 == 1 ? -1.0 : 1.0);
+      expect_equal(difference(x, 0), difference(y, 0), difference(s * x, 0), difference(last, 0));
+      expect_equal(difference(x, 0), difference(s * x, 0), difference(0, y), difference(0, last));
+      zeros += rounded_determinant({x, 0}, {y, 0}, {s * x, 0}, {last, 0}) == 0.0 ? 1 : 0;
+    }
+  }
+  EXPECT_GT(zeros, 30'000U);
+}
+
 TEST_F(ExactDeterminant, IsRightInTheMiddleBetweenDoubles) {
   for (int i = 0; i < 10'000; ++i) {
     // x (1 + 2^-53) and its like: halves of the last place, and next to them.

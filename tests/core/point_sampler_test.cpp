@@ -107,10 +107,10 @@ TEST(PointSampler, TakesMeshesOfAnySize) {
   for (const double size : {1e-300, 1e300}) {
     const TriangleMesh mesh = test::box_mesh({0, 0, 0}, {size, size, size});
     const PointSampler sampler(mesh, bounding_box(mesh), {NearSamples{100, 0.01}}, 1);
-    EXPECT_TRUE(sampler.has_area());
+    EXPECT_TRUE(sampler.has_needed_area());
     for (const Vec3& p : all(sampler)) EXPECT_LT(std::abs(p.x - size / 2), 0.6 * size);
   }
-  EXPECT_FALSE(PointSampler({{{1, 2, 3}}, {{0, 0, 0}}}, kBox, {}, 1).has_area());
+  EXPECT_FALSE(PointSampler({{{1, 2, 3}}, {{0, 0, 0}}}, kBox, {SurfaceSamples{1}}, 1).has_needed_area());
 }
 
 }  // namespace

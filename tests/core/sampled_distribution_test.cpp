@@ -60,7 +60,7 @@ Place place_of(const std::array<Vec3, 3>& t, const Vec3& p) {
 
 std::vector<Vec3> drawn(const TriangleMesh& mesh, std::uint64_t count, std::uint64_t seed = 1) {
   const PointSampler sampler(mesh, bounding_box(mesh), {NearSamples{count, 0.0}}, seed);
-  EXPECT_TRUE(sampler.has_area());
+  EXPECT_TRUE(sampler.has_needed_area());
   EXPECT_TRUE(sampler.is_finite());
   std::vector<Vec3> points(count);
   sampler.draw(0, points);
@@ -250,7 +250,7 @@ TEST(SampledPoints, NeedAnAreaThatIsNotRounding) {
   // On a line through the origin; doubles make a normal of 1e-17 of the differences.
   const Vec3 v{0.1, 0.7, 0.3};
   const TriangleMesh line{{-1.0 * v, {0, 0, 0}, 2.0 * v}, {{0, 1, 2}}};
-  EXPECT_FALSE(PointSampler(line, bounding_box(line), {NearSamples{5, 0.0}}, 1).has_area());
+  EXPECT_FALSE(PointSampler(line, bounding_box(line), {NearSamples{5, 0.0}}, 1).has_needed_area());
 }
 
 TEST(SampledPoints, TakeAnyAreaThereIs) {

@@ -64,7 +64,8 @@ std::optional<Failure> check_samples(const TriangleMesh& mesh, std::uint64_t see
   const TriangleMesh surface = with_area(mesh);
   const Box box = bounding_box(mesh);
   const PointSampler sampler(mesh, box, {NearSamples{count, 0.0}, UniformSamples{count}}, seed);
-  if (sampler.has_area() == surface.triangles.empty()) return Failure{{}, "an area, or none, where there is the other"};
+  if (sampler.has_needed_area() == surface.triangles.empty())
+    return Failure{{}, "an area, or none, where there is the other"};
   if (surface.triangles.empty()) return std::nullopt;
   constexpr double kNear = 1e300;  // to overflow
   if (!sampler.is_finite()) {

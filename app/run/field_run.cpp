@@ -116,7 +116,7 @@ void FieldRun::warn_of_difference(double difference) {
 }
 
 double memory_of_distances(std::uint64_t triangles, const FieldOptions& field) {
-  constexpr double kPerTriangle = 240.0;  // less than any measured, so that nothing that fits is refused: 249 to 300
+  constexpr double kPerTriangle = 192.0;  // less than any measured, so that nothing that fits is refused: 212 to 230
   return field.has(Field::kDistance) ? kPerTriangle * static_cast<double>(triangles) : 0.0;
 }
 

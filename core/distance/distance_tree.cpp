@@ -16,16 +16,6 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kWidth = TrianglePack::kWidth;
 
-template <class Boxes>
-Box box_of_columns(const Boxes& boxes) {
-  Box all;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    all.lower[static_cast<int>(axis)] = *std::ranges::min_element(boxes.lower[axis]);
-    all.upper[static_cast<int>(axis)] = *std::ranges::max_element(boxes.upper[axis]);
-  }
-  return all;
-}
-
 // Packs of the triangles, and their boxes. Not a vector, which would clear the packs first: they are much memory, and
 // clearing takes as long as filling.
 std::unique_ptr<TrianglePack[]> make_packs(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
@@ -35,7 +25,7 @@ std::unique_ptr<TrianglePack[]> make_packs(const TriangleMesh& mesh, std::span<c
   parallel_for_each(boxes.size(), kPacksPerTask, [&](std::size_t n) {
     const std::size_t first = n * kWidth;
     packs[n].set(mesh, triangles.subspan(first, std::min(kWidth, triangles.size() - first)));
-    boxes[n] = box_of_columns(packs[n]);
+    boxes[n] = packs[n].box();
   });
   return packs;
 }
@@ -56,7 +46,14 @@ void DistanceTree::Node::set(std::size_t child, const Box& box) {
   }
 }
 
-Box DistanceTree::Node::box() const { return box_of_columns(*this); }
+Box DistanceTree::Node::box() const {
+  Box all;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    all.lower[static_cast<int>(axis)] = *std::ranges::min_element(lower[axis]);
+    all.upper[static_cast<int>(axis)] = *std::ranges::max_element(upper[axis]);
+  }
+  return all;
+}
 
 DistanceTree::DistanceTree(const TriangleMesh& mesh, SimdLevel level)
     : triangles_(triangles_in_runs(mesh, kWidth)),

@@ -60,8 +60,14 @@ HWY_INLINE BoxLanes boxes_of(const NearTriangles& list, std::size_t n) {
           {hn::LoadU(d, &list.upper[0][n]), hn::LoadU(d, &list.upper[1][n]), hn::LoadU(d, &list.upper[2][n])}};
 }
 HWY_INLINE BoxLanes boxes_of(const TrianglePack& pack, std::size_t i) {
-  return {{hn::Load(d, &pack.lower[0][i]), hn::Load(d, &pack.lower[1][i]), hn::Load(d, &pack.lower[2][i])},
-          {hn::Load(d, &pack.upper[0][i]), hn::Load(d, &pack.upper[1][i]), hn::Load(d, &pack.upper[2][i])}};
+  const auto of_corners = [&](std::size_t axis, const auto& choose) {
+    const auto at = [&](std::size_t corner) { return hn::Load(d, &pack.corners[corner][axis][i]); };
+    return choose(choose(at(0), at(1)), at(2));
+  };
+  const auto least = [](Lanes a, Lanes b) { return hn::Min(a, b); };
+  const auto most = [](Lanes a, Lanes b) { return hn::Max(a, b); };
+  return {{of_corners(0, least), of_corners(1, least), of_corners(2, least)},
+          {of_corners(0, most), of_corners(1, most), of_corners(2, most)}};
 }
 
 // Where triangles are from the middle of some samples. Distances grow along `away`, of length 1. Where directions are

@@ -21,9 +21,9 @@ namespace {
 
 using Bounds = TrianglePack::Column;
 
-// Of the box [from, to] from the eight boxes of a node or pack.
-template <class Boxes>
-HWY_INLINE void set_bounds(const Boxes& boxes, const VectorLanes& from, const VectorLanes& to, Bounds& bounds) {
+// Of the box [from, to] from the eight boxes of a node.
+HWY_INLINE void set_bounds(const DistanceTree::Node& boxes, const VectorLanes& from, const VectorLanes& to,
+                           Bounds& bounds) {
   for (std::size_t i = 0; i < TrianglePack::kWidth; i += hn::Lanes(d)) {
     const VectorLanes lower{hn::Load(d, &boxes.lower[0][i]), hn::Load(d, &boxes.lower[1][i]),
                             hn::Load(d, &boxes.lower[2][i])};

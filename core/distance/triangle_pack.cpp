@@ -2,23 +2,17 @@
 
 #include <algorithm>
 
-#include "core/mesh/triangle_runs.h"
-
 namespace raycone {
 
 void TrianglePack::set(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles) {
   for (std::size_t slot = 0; slot < kWidth; ++slot) {
-    const std::uint32_t number = triangles[std::min(slot, triangles.size() - 1)];
-    const Triangle& t = mesh.triangles[number];
+    const Triangle& t = mesh.triangles[triangles[std::min(slot, triangles.size() - 1)]];
     const TriangleDistance distance(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
-    const Box box = box_of_triangle(mesh, number);
     for (std::size_t n = 0; n < 3; ++n) {
       const int axis = static_cast<int>(n);
       for (std::size_t corner = 0; corner < 3; ++corner) corners[corner][n][slot] = mesh.vertices[t[corner]][axis];
       to_v[n][slot] = distance.to_v_[axis];
       to_w[n][slot] = distance.to_w_[axis];
-      lower[n][slot] = box.lower[axis];
-      upper[n][slot] = box.upper[axis];
       inverse_square[n][slot] = distance.inverse_square_[n];
     }
     sure_from[slot] = distance.sure_from_;
@@ -26,6 +20,13 @@ void TrianglePack::set(const TriangleMesh& mesh, std::span<const std::uint32_t> 
     direction_from[slot] = distance.direction_from_;
     shape[slot] = static_cast<double>(distance.shape_);
   }
+}
+
+Box TrianglePack::box() const {
+  Box all = empty_box();
+  for (std::size_t slot = 0; slot < kWidth; ++slot)
+    extend(all, box_of(corner(0, slot), corner(1, slot), corner(2, slot)));
+  return all;
 }
 
 void TrianglePack::copy(std::size_t slot, const TrianglePack& from, std::size_t from_slot) {

@@ -97,10 +97,9 @@ bool any_needs_area(const std::vector<SampleGroup>& groups) {
                              [](const SampleGroup& group) { return !std::holds_alternative<UniformSamples>(group); });
 }
 
-double diagonal_of(const TriangleMesh& mesh) {
+double diagonal_of(const TriangleMesh& mesh, const Box& box) {
   const int exponent = largest_exponent(mesh);
   const PowerOfTwo to_unit(-exponent), to_world(exponent);
-  const Box box = bounding_box(mesh);
   return to_world(norm(to_unit(box.upper) - to_unit(box.lower)));
 }
 
@@ -108,9 +107,10 @@ double diagonal_of(const TriangleMesh& mesh) {
 
 PointSampler::PointSampler(const TriangleMesh& mesh, const Box& box, std::vector<SampleGroup> groups,
                            std::uint64_t seed)
-    : mesh_(mesh),
+    : mesh_(any_needs_area(groups) ? mesh : TriangleMesh()),
       box_(box),
-      diagonal_(diagonal_of(mesh)),
+      box_of_mesh_(bounding_box(mesh)),
+      diagonal_(diagonal_of(mesh, box_of_mesh_)),
       groups_(std::move(groups)),
       seed_(seed),
       areas_(any_needs_area(groups_) ? areas_up_to(mesh) : std::vector<double>()),
@@ -119,11 +119,10 @@ PointSampler::PointSampler(const TriangleMesh& mesh, const Box& box, std::vector
 }
 
 bool PointSampler::is_finite() const {
-  const Box of_mesh = bounding_box(mesh_);
   return std::ranges::all_of(groups_, [&](const SampleGroup& group) {
     if (std::holds_alternative<SurfaceSamples>(group)) return true;
     const auto* const near = std::get_if<NearSamples>(&group);
-    const Box& box = near != nullptr ? of_mesh : box_;
+    const Box& box = near != nullptr ? box_of_mesh_ : box_;
     const double reach = near != nullptr ? Random::kLargestNormal * noise_of(*near) : 0.0;
     for (int axis = 0; axis < 3; ++axis) {
       const double lower = box.lower[axis] - reach, upper = box.upper[axis] + reach;

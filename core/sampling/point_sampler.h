@@ -58,8 +58,8 @@ class PointSampler {
   [[nodiscard]] std::size_t triangle_at(double area) const;
   [[nodiscard]] double noise_of(const NearSamples& near) const;
 
-  TriangleMesh mesh_;
-  Box box_;
+  TriangleMesh mesh_;  // none where no group needs its triangles
+  Box box_, box_of_mesh_;
   double diagonal_;
   std::vector<SampleGroup> groups_;
   std::uint64_t seed_;

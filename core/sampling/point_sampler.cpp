@@ -68,10 +68,10 @@ std::vector<double> areas_up_to(const TriangleMesh& mesh) {
     sum += doubled_area(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
     sums.push_back(sum);
   }
-  const int exponent = sum > 0 ? std::ilogb(sum) : 0;
+  const long double unit = std::scalbn(1.0L, sum > 0 ? -std::ilogb(sum) : 0);
   std::vector<double> areas;
   areas.reserve(sums.size());
-  for (const long double s : sums) areas.push_back(static_cast<double>(std::scalbn(s, -exponent)));
+  for (const long double s : sums) areas.push_back(static_cast<double>(unit * s));
   return areas;
 }
 

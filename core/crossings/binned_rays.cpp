@@ -8,7 +8,7 @@ namespace raycone {
 BinnedRays::Axis BinnedRays::axis_of(const std::vector<NumberedRay>& rays, int axis, std::size_t bins) {
   const auto [least, most] = std::ranges::minmax(rays, {}, [&](const NumberedRay& ray) { return ray.origin[axis]; });
   const double lower = least.origin[axis], upper = most.origin[axis];
-  return {lower, upper, static_cast<double>(bins) / (upper - lower), bins};
+  return {lower, upper, static_cast<double>(bins) / (upper - lower), lower < upper ? bins : 1};
 }
 
 BinnedRays::BinnedRays(std::vector<NumberedRay> rays) : begins_(2) {

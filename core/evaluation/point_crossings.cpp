@@ -22,20 +22,21 @@ void decide(const ScaledMesh& mesh, std::uint32_t triangle, const NumberedRay& r
   }
 }
 
+using Effort = ScaledMesh::PassEffort;
+
 // Of the triangles [begin, end), up to the first one at which more effort than `most` has been taken; how much has.
-std::uint64_t pass_over(const ScaledMesh& mesh, std::size_t begin, std::size_t end, const BinnedRays& rays,
-                        std::uint64_t most, PointCrossings& crossings) {
-  constexpr std::uint64_t kTriangle = 3, kDecided = 4;  // effort, where a look at a ray or a row of bins is 1
-  std::uint64_t effort = 0;
+Effort pass_over(const ScaledMesh& mesh, std::size_t begin, std::size_t end, const BinnedRays& rays, std::uint64_t most,
+                 PointCrossings& crossings) {
+  Effort effort;
   const TriangleMesh& all = mesh.mesh();
-  for (std::size_t t = begin; t < end && effort <= most; ++t) {
+  for (std::size_t t = begin; t < end && effort.sum() <= most; ++t) {
     const Triangle& corners = all.triangles[t];
     const Box box = box_of(all.vertices[corners[0]], all.vertices[corners[1]], all.vertices[corners[2]]);
-    const std::size_t looked = rays.for_each_met(box, [&](const NumberedRay& ray) {
+    effort.looks += rays.for_each_met(box, [&](const NumberedRay& ray) {
       decide(mesh, static_cast<std::uint32_t>(t), ray, crossings);
-      effort += kDecided;
+      ++effort.decisions;
     });
-    effort += kTriangle + looked;
+    ++effort.triangles;
   }
   return effort;
 }
@@ -51,9 +52,10 @@ class Patience {
   [[nodiscard]] std::uint64_t for_more(std::size_t triangles) {
     constexpr double kAtOnce = 0.125;
     const auto begun = static_cast<double>(begun_.fetch_add(triangles, std::memory_order_relaxed) + triangles);
-    const double due = most_ * (kAtOnce + begun / triangles_) - static_cast<double>(effort());
-    if (!(due >= 1.0)) lost_.store(true, std::memory_order_relaxed);
-    return is_lost() ? 0 : static_cast<std::uint64_t>(std::min(due, 0x1p63));
+    const double due = most_ * std::min(kAtOnce + begun / triangles_, 1.0);
+    const double left = due - static_cast<double>(effort_.load(std::memory_order_relaxed));
+    if (!(left >= 1.0)) lost_.store(true, std::memory_order_relaxed);
+    return is_lost() ? 0 : static_cast<std::uint64_t>(std::min(left, 0x1p63));
   }
 
   // Effort that was taken, of what was allowed.
@@ -63,7 +65,6 @@ class Patience {
   }
 
   [[nodiscard]] bool is_lost() const { return lost_.load(std::memory_order_relaxed); }
-  [[nodiscard]] std::uint64_t effort() const { return effort_.load(std::memory_order_relaxed); }
 
  private:
   double most_, triangles_;
@@ -71,6 +72,22 @@ class Patience {
   std::atomic<std::uint64_t> effort_ = 0;
   std::atomic<bool> lost_ = false;
 };
+
+// Nothing where the pass was given up.
+std::optional<PointCrossings> try_to_pass(const ScaledMesh& mesh, const BinnedRays& rays, std::size_t count) {
+  constexpr std::size_t kTrianglesPerTask = 1024;
+  const std::size_t triangles = mesh.mesh().triangles.size();
+  PointCrossings crossings(count);
+  Patience patience(mesh.effort_left(), triangles);
+  parallel_for(triangles, kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
+    const std::uint64_t allowed = patience.for_more(end - begin);
+    if (allowed == 0) return;
+    const Effort effort = pass_over(mesh, begin, end, rays, allowed, crossings);
+    patience.count(effort.sum(), allowed);
+    mesh.count_effort(effort);
+  });
+  return patience.is_lost() ? std::nullopt : std::optional(std::move(crossings));
+}
 
 }  // namespace
 
@@ -80,18 +97,14 @@ bool takes_passes(const ScaledMesh& mesh) {
 
 std::optional<PointCrossings> crossings_by_pass(const ScaledMesh& mesh, std::vector<NumberedRay> rays,
                                                 std::size_t count) {
-  constexpr std::size_t kTrianglesPerTask = 1024;
   std::erase_if(rays, [&](const NumberedRay& ray) { return !ray.meets(mesh.box()); });
-  const BinnedRays binned(std::move(rays));
-  PointCrossings crossings(count);
-  Patience patience(mesh.effort_left(), mesh.mesh().triangles.size());
-  parallel_for(mesh.mesh().triangles.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
-    const std::uint64_t allowed = patience.for_more(end - begin);
-    if (allowed > 0) patience.count(pass_over(mesh, begin, end, binned, allowed, crossings), allowed);
-  });
-  mesh.count_pass(patience.effort());
-  if (!patience.is_lost()) return crossings;
-  (void)mesh.grid();
+  if (rays.empty()) return PointCrossings(count);
+  mesh.count_rays(rays.size());
+  {
+    const BinnedRays binned(std::move(rays));
+    if (auto crossings = try_to_pass(mesh, binned, count)) return crossings;
+    if (!mesh.build_grid()) return try_to_pass(mesh, binned, count);
+  }
   return std::nullopt;
 }
 

@@ -1,6 +1,7 @@
 #include "core/evaluation/point_tile.h"
 
 #include <algorithm>
+#include <cassert>
 
 namespace raycone {
 
@@ -24,6 +25,7 @@ void PointTile::find_crossings(const ScaledMesh& mesh) {
   if (mesh.options().ray_engine == RayEngine::kEmbree) {
     ask_embree(mesh);
   } else {
+    assert(mesh.grid_if_built());  // within this loop threads would wait for one another
     doubtful_.clear();
     mesh.grid().crossings({queries_.data(), count_}, {n_.data(), count_}, doubtful_);
     for (const RayCandidate& candidate : doubtful_) decide(mesh, candidate);

@@ -239,11 +239,13 @@ Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, 
   Tally total;
   const ScaledMesh& scaled = meshes.scaled();
   constexpr std::size_t kIndexable = std::size_t{1} << 31;
-  // Before the loops over points, within which threads would wait for one another.
-  scaled.prepare_points(static_cast<double>(points.size()));
   for (std::size_t begin = 0, count = 0; begin < points.size(); begin += count) {
+    const std::size_t left = points.size() - begin;
+    // What the points need is built before the loops over them, within which threads would wait for one another.
+    scaled.prepare_points(static_cast<double>(left));
     const bool closed = scaled.is_closed() && scaled.grid_if_built() != nullptr;
-    count = std::min(closed ? kIndexable : CoherentOrder::batch(scaled), points.size() - begin);
+    count = std::min(closed ? kIndexable : CoherentOrder::batch(scaled), left);
+    if (takes_passes(scaled)) count = scaled.points_to_try(count);
     const Diagnostics diagnostics = out.diagnostics ? out.diagnostics->part(begin, count) : Diagnostics{};
     const ValueOutputs of_batch{out.values.subspan(begin, count), out.done, out.diagnostics ? &diagnostics : nullptr};
     total += (closed ? evaluate_closed : evaluate_batch)(meshes, points.subspan(begin, count), of_batch, settling);

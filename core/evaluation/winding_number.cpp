@@ -100,7 +100,9 @@ void WindingNumberEvaluator::settle(std::span<const Vec3> points, double critica
 void WindingNumberEvaluator::prepare_points(double points) const {
   const DefaultFloatingPoint guard;
   const ScaledMesh& scaled = implementation_->scaled();
-  if (!scaled.mesh().triangles.empty()) scaled.prepare_points(points);
+  if (scaled.mesh().triangles.empty()) return;
+  scaled.expect_points(points);
+  scaled.prepare_points(points);
 }
 
 Tally WindingNumberEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& block, std::span<double> values,

@@ -78,8 +78,8 @@ struct Accuracy {
 // threshold, and those are summed again: many at once near half-integers, near others one by one.
 [[nodiscard]] double tolerance_for_sides(const Rule& rule);
 
-// Whether a search structure pays for so many points, of a mesh of so many triangles. Without one, each hundred
-// thousand points take a pass over the triangles.
+// Whether a search structure is likely to pay for so many points, of a mesh of so many triangles. Without one, each
+// 65 536 points or more take a pass over the triangles.
 [[nodiscard]] bool grid_pays_for_points(double points, double triangles);
 
 // What values took: pairs of a sample with an edge or a triangle, and with a multipole, which stands for many.
@@ -141,8 +141,8 @@ class WindingNumberEvaluator {
   // hundred times sooner where most of them are so near, as in a search for the places where w is one.
   void evaluate_unsettled(std::span<const Vec3> points, std::span<double> values) const;
 
-  // Prepares what points need and lattices may not: for so many that it pays, a search structure. Without this call,
-  // the evaluation builds it with which enough points have come, or fewer in small portions.
+  // Prepares what points need and lattices may not, where so many are going to come: if it pays, a search structure.
+  // Otherwise the evaluation builds it with which enough points have come, or fewer in small portions.
   void prepare_points(double points = std::numeric_limits<double>::infinity()) const;
 
   // Sets for each sample of a block of `lattice` only whether `rule` holds, 1, or not, 0: exactly. In a small part of

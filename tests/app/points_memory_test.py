@@ -51,10 +51,11 @@ class PointsOnStandardInput(unittest.TestCase):
         few = self.peak_from_a_file(1000)
         self.assertLessEqual(self.peak_from_a_file(3000), few + ALLOWED_BYTES)
 
-    def make_mesh(self, side):
+    def make_mesh(self, side, place="{x} {i} {j}"):
         """2 side^2 triangles, of whose grid each takes 112 bytes at least, and 250 or more here."""
         with open(self.mesh, "w", encoding="utf-8") as file:
-            file.writelines(f"v {i * j % 7} {i} {j}\n" for i in range(side + 1) for j in range(side + 1))
+            vertices = [(i * j % 7, i, j) for i in range(side + 1) for j in range(side + 1)]
+            file.writelines(f"v {place.format(x=x, i=i, j=j)}\n" for x, i, j in vertices)
             corners = [i * (side + 1) + j + 1 for i in range(side) for j in range(side)]
             file.writelines(f"f {n} {n + 1} {n + side + 2} {n + side + 1}\n" for n in corners)
 
@@ -62,13 +63,32 @@ class PointsOnStandardInput(unittest.TestCase):
         """Faces look for them."""
         self.make_mesh(200)
         peaks = []
-        for count in (20_000, 300_000):
+        for count in (2000, 20_000, 300_000):
             sample = [RAYCONE, "points", self.mesh, "--sample", f"uniform={count}", "--field", "inside", "--quiet"]
             output = [*sample, "--threads", "1", "--report", self.report, "-o", f"{self.report}.{count}.npz"]
             subprocess.run(output, timeout=300, check=True)
             with open(self.report, encoding="utf-8") as file:
                 peaks.append(json.load(file)["peak_memory_bytes"])
-        self.assertGreater(peaks[1] - peaks[0], 200 * 2 * 200**2)
+        self.assertLess(peaks[1] - peaks[0], 100 * 2 * 200**2)
+        self.assertGreater(peaks[2] - peaks[1], 200 * 2 * 200**2)
+
+    def test_faces_go_on_looking_where_memory_lacks_for_a_grid(self):
+        """Of a zigzag along the rays, whose faces meet so many of them that they give up."""
+        self.make_mesh(200, "{i} {j} {x}")
+
+        def run(name, *options):
+            output = os.path.join(os.path.dirname(self.report), name)
+            sample = [RAYCONE, "points", self.mesh, "--sample", "uniform=65000", "--field", "inside", "--tolerance=0"]
+            command = [*sample, "--threads=1", "--quiet", "--report", self.report, "-o", output, *options]
+            subprocess.run(command, timeout=300, check=True)
+            with open(self.report, encoding="utf-8") as report, open(output, "rb") as values:
+                return json.load(report)["peak_memory_bytes"], values.read()
+
+        with_grid, expected = run("free.npz")
+        limit = with_grid - (4 << 20)
+        peak, values = run("limited.npz", "--memory-limit", str(limit))
+        self.assertLess(peak, limit)
+        self.assertEqual(values, expected)
 
     def test_packed_points_may_be_many(self):
         """Memory for a grid is asked for where it may be needed, and not of a file that is short for sure."""

@@ -3,9 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
+#include <span>
 #include <vector>
 
+#include "core/evaluation/points.h"
 #include "core/evaluation/winding_number.h"
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
@@ -62,15 +65,19 @@ TEST(PointCrossings, AreTheSameByPassesAndByGrid) {
   }
 }
 
-// Of a mesh that takes a grid for so many points, those that cannot be scaled come in batches of their own.
+// Of a mesh that takes a grid for so many points, those that cannot be scaled come by themselves: of the small one by a
+// grid, too, of the large one in two passes.
 TEST(PointCrossings, AreTheSameForManyPointsThatCannotBeScaled) {
   test::Random random(2);
-  std::vector<Vec3> points = points_about_cells(random, 100'000);
-  for (std::size_t i = 0; i < points.size(); i += 2) points[i][static_cast<int>(random() % 3)] = 5e-324;
-  const TriangleMesh mesh = test::random_cells(random, 3);
-  const WindingNumberEvaluator by_grid(mesh);
-  EXPECT_TRUE(answers(by_grid, points) ==
-              answers(WindingNumberEvaluator(mesh, {.ray_engine = RayEngine::kPasses}), points));
+  std::vector<Vec3> points = points_about_cells(random, 200'000);
+  for (std::size_t i = 0; i < points.size(); i += 3) points[i][static_cast<int>(random() % 3)] = 5e-324;
+  const TriangleMesh large = test::moved(test::sphere(160), {2, 2, 2}, {1, 1, 1});
+  for (const TriangleMesh& mesh : {test::random_cells(random, 3), large}) {
+    const WindingNumberEvaluator any(mesh), by_passes(mesh, {.ray_engine = RayEngine::kPasses});
+    EXPECT_TRUE(grid_pays_for_points(static_cast<double>(points.size()), double(mesh.triangles.size())));
+    EXPECT_TRUE(answers(any, points) == answers(by_passes, points));
+  }
+  EXPECT_FALSE(grid_pays_for_points(static_cast<double>(points.size()) / 3, double(large.triangles.size())));
 }
 
 // Needles whose boxes are large: each of them may meet a quarter of all rays.
@@ -108,6 +115,57 @@ TEST(PointCrossings, AreFoundByAGridWhereTrianglesMeetTooManyRays) {
   };
   EXPECT_TRUE(meets_too_many(needles(random, 4000)));
   EXPECT_FALSE(meets_too_many(test::sphere(45)));  // as many triangles
+}
+
+// Points in portions, as questions in a pipe come: passes are given up in the midst of them, sooner or later.
+TEST(PointCrossings, AreTheSameInPortions) {
+  test::Random random(4);
+  const TriangleMesh mesh = needles(random, 4000), open = test::joined(needles(random, 3000), test::sphere(30));
+  std::vector<Vec3> points(6000);
+  for (Vec3& p : points) p = test::uniform_point(random, {{-0.2, -0.2, -0.2}, {1, 1, 1}});
+  for (std::size_t i = 0; i < points.size(); i += 11) points[i].x = 5e-324;
+  for (const TriangleMesh& each : {mesh, open}) {
+    std::vector<double> expected(points.size()), values(points.size());
+    WindingNumberEvaluator(each, {.ray_engine = RayEngine::kPasses}).evaluate(points, expected);
+    for (const std::size_t portion : {1U, 17U, 700U, 5000U}) {
+      const WindingNumberEvaluator evaluator(each);
+      evaluator.prepare_points(static_cast<double>(points.size()));
+      const std::size_t end = std::min<std::size_t>(points.size(), 300 * portion);
+      for (std::size_t i = 0; i < end; i += portion) {
+        const std::size_t count = std::min(portion, end - i);
+        evaluator.evaluate(std::span(points).subspan(i, count), std::span(values).subspan(i, count));
+      }
+      EXPECT_TRUE(std::equal(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(end), expected.begin()))
+          << portion;
+    }
+  }
+}
+
+// Each meets 60 spheres' triangles: what the first points take tells that the grid pays, though it seldom does so
+// early.
+TEST(PointCrossings, OfAFewTellWhetherAGridPays) {
+  const DefaultFloatingPoint guard;
+  test::Random random(5);
+  const TriangleMesh one = test::sphere(20);
+  TriangleMesh nested = one;
+  for (int n = 1; n < 60; ++n) {
+    const double size = 1.0 - n / 100.0;
+    nested = test::joined(nested, test::moved(one, {size, size, size}, {0, 0, 0}));
+  }
+  std::vector<Vec3> points(80'000);
+  for (Vec3& p : points) p = test::uniform_point(random, {{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}});
+  const auto takes_grid = [&](const TriangleMesh& mesh) {
+    const ScaledMeshes meshes(mesh, {});
+    const ScaledMesh& scaled = meshes.scaled();
+    EXPECT_FALSE(grid_pays_for_points(static_cast<double>(points.size()), double(mesh.triangles.size())));
+    EXPECT_LT(scaled.points_to_try(points.size()), points.size());
+    std::vector<double> values(points.size());
+    evaluate_points(meshes, points, {values});
+    EXPECT_EQ(scaled.points_to_try(points.size()), points.size());  // once is enough
+    return scaled.grid_if_built() != nullptr;
+  };
+  EXPECT_TRUE(takes_grid(nested));
+  EXPECT_FALSE(takes_grid(test::sphere(170)));
 }
 
 // A rule of thumb may be off by a factor, not by ten.

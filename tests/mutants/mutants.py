@@ -83,7 +83,7 @@ MUTANTS = [
     Mutant("pass_leaves_out_the_far_box", "a ray that begins behind the mesh is left out, no other", [
         ("core/evaluation/point_crossings.cpp", "return !ray.meets(mesh.box());", "return !ray.meets(mesh.box()) || ray.origin.x < mesh.box().lower.x;")]),
     Mutant("pass_gives_up_in_silence", "a pass that would take longer than a grid is not used", [
-        ("core/evaluation/point_crossings.cpp", "if (!patience.is_lost()) return", "if (patience.effort() > 0) return")]),
+        ("core/evaluation/point_crossings.cpp", "return patience.is_lost() ? std::nullopt : std::optional(std::move(crossings));", "return crossings;")]),
     Mutant("sections_without_lines", "a long triangle concerns the rows on the lines of its edges, too", [
         ("core/crossings/triangle_sections.h", "  std::sort(parts.begin(),", "  parts[0] = parts[1] = parts[2] = nothing;\n  std::sort(parts.begin(),")]),
     Mutant("sections_without_error", "where a line is, is known up to rounding", [
@@ -301,7 +301,7 @@ MUTANTS = [
     Mutant("area_filter_too_small", "doubles decide an area only where its error bound vouches for it", [
         ("core/sampling/point_sampler.cpp", "kThinnest = 0x1p-20", "kThinnest = 0x1p-60")]),
     Mutant("area_in_world_units", "areas may be below the range of doubles", [
-        ("core/sampling/point_sampler.cpp", "std::scalbn(s, -exponent)", "((void)exponent, s)")]),
+        ("core/sampling/point_sampler.cpp", "unit * s", "((void)unit, s)")]),
     Mutant("triangle_without_root", "points are uniform within a triangle", [
         ("core/sampling/point_sampler.cpp", "from_a = std::sqrt(random.uniform())", "from_a = random.uniform()")]),
     Mutant("points_out_of_their_box", "points of faces across an axis lie in them exactly", [

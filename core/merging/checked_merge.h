@@ -53,11 +53,11 @@ struct MergeOptions {
   bool once = false;                                     // not again within less, as who calls can make another surface
 };
 
-// merge_planes() of a surface, without what makes faults (faults_of()): vertices around them stay where they are, more
-// of them the longer faults are left. So one place where planes do not agree costs few faces. Where that makes faults
-// fewer, points are moved (move_points()). No surface where all that did not help. `input`: the mesh that it is of;
-// `inside`: its nodes; `is_right`: whether the surface has no faults before, asked where that matters; none
-// where it is known to have none, but perhaps nodes on the wrong side. The same for any number of threads.
+// A surface merged by PlaneMerger, without what makes faults (faults_of()): vertices around them stay where they are,
+// more of them the longer faults are left. So one place where planes do not agree costs few faces. Where that makes
+// faults fewer, points are moved (move_points()). No surface where all that did not help. `input`: the mesh that it is
+// of; `inside`: its nodes; `is_right`: whether the surface has no faults before, asked where that matters; none where
+// it is known to have none, but perhaps nodes on the wrong side. The same for any number of threads.
 [[nodiscard]] CheckedMerge checked_merge(const SurfaceMesh& surface, const TriangleMesh& input, const NodeSet& inside,
                                          const MergeOptions& options, const std::function<bool()>& is_right);
 

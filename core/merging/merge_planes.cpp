@@ -175,9 +175,4 @@ void PlaneMerger::merge_first_bricks(const std::vector<bool>& kept) {
   kept_ = kept;
 }
 
-MergedFaces merge_planes(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice,
-                         const std::vector<bool>& kept, const MergeLimits& limits) {
-  return PlaneMerger(surface, input, lattice, limits).merge(kept);
-}
-
 }  // namespace raycone

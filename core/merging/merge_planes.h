@@ -17,7 +17,7 @@ struct MergedFaces {
   std::vector<Triangle> triangles;
   std::vector<std::int32_t> sources;
   std::vector<std::uint32_t> into;   // of each vertex, what it was pulled into; itself, where it stayed
-  std::vector<std::uint32_t> faces;  // of merge_planes(): the numbers that its faces had before, increasing
+  std::vector<std::uint32_t> faces;  // of PlaneMerger alone: the numbers that its faces had before, increasing
 };
 
 class BrickMerger;
@@ -54,9 +54,5 @@ class PlaneMerger {
   std::vector<bool> kept_;
   std::shared_ptr<SecondPass> second_;  // of the last call, likewise
 };
-
-// The same by a merger that is used once.
-[[nodiscard]] MergedFaces merge_planes(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice,
-                                       const std::vector<bool>& kept, const MergeLimits& limits);
 
 }  // namespace raycone

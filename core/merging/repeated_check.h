@@ -15,7 +15,7 @@ namespace raycone {
 
 class RepeatedCheck {
  public:
-  // Both must stay. `vertices`: how many merge_planes() numbers.
+  // Both must stay. `vertices`: how many the surface had before it was merged.
   RepeatedCheck(const NodeSet& inside, std::size_t vertices) : inside_(inside), vertices_(vertices) {}
 
   // What faults_of() says of a mesh. Faces that were in the last one, with corners of the same numbers in the same

@@ -29,7 +29,7 @@ TEST(MergedFaces, CloseUpWhereBricksMeet) {
     const NodeSet nodes = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
     const std::vector<bool> kept(fine.mesh.vertices.size(), false);
     for (const double most : {1e-9, 0.01, 0.3}) {
-      const MergedFaces merged = merge_planes(fine, mesh, lattice, kept, {most * lattice.spacing.x, 0.0});
+      const MergedFaces merged = PlaneMerger(fine, mesh, lattice, {most * lattice.spacing.x, 0.0}).merge(kept);
       EXPECT_LT(4 * merged.triangles.size(), fine.mesh.triangles.size());
       const SurfaceFaults faults = faults_of(compacted(fine.mesh.vertices, merged.triangles), nodes);
       EXPECT_EQ(faults.edges, 0U) << most;
@@ -47,7 +47,7 @@ TEST(MergedFaces, AreTheSameWhateverWasKeptBefore) {
     std::vector<bool> kept(fine.mesh.vertices.size(), false);
     PlaneMerger merger(fine, mesh, lattice, limits);
     for (int round = 0; round < 12; ++round) {
-      const MergedFaces again = merger.merge(kept), once = merge_planes(fine, mesh, lattice, kept, limits);
+      const MergedFaces again = merger.merge(kept), once = PlaneMerger(fine, mesh, lattice, limits).merge(kept);
       EXPECT_EQ(again.triangles, once.triangles) << round;
       EXPECT_EQ(again.sources, once.sources) << round;
       EXPECT_EQ(again.into, once.into) << round;

@@ -80,7 +80,7 @@ TEST(RepeatedCheck, FindsWhatFaultsOfFindsAfterAWholeSurface) {
     std::vector<Vec3> vertices = fine.mesh.vertices;
     for (int n = 0; n < 20; ++n)
       kept[static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(kept.size())))] = false;
-    const MergedFaces merged = merge_planes(fine, mesh, lattice, kept, {1e-9 * lattice.spacing.x, 0.0});
+    const MergedFaces merged = PlaneMerger(fine, mesh, lattice, {1e-9 * lattice.spacing.x, 0.0}).merge(kept);
     const auto face = static_cast<std::size_t>(uniform(random, 0.0, static_cast<double>(merged.faces.size())));
     if (round % 2 == 1) vertices[merged.triangles[face][0]].x += uniform(random, -9.0, 9.0) * lattice.spacing.x;
     const TriangleMesh now = used_part(vertices, merged.triangles);

@@ -94,16 +94,14 @@ void BrickMerger::merge_one(const SurfaceBricks& bricks, std::uint32_t brick, st
   }
   for (std::uint32_t v = 0; v < global.size(); ++v) {
     if (merger.into()[v] != v) state_.into[global[v]] = global[merger.into()[v]];
-    note_settled(global[v], patch.settled[v] != 0, merger.is_settled(v));
+    // Bricks that share a vertex may each change this.
+    const std::uint8_t settled = merger.is_settled(v) ? 1 : 0;
+    if (settled != patch.settled[v])
+      std::atomic_ref(state_.settled[global[v]]).store(settled, std::memory_order_relaxed);
     // Of such a vertex another brick may have said so before: what this one does must not depend on that.
     const bool is_shared = bricks.owner[global[v]] != brick;
     if (changed && is_shared && merger.has_changed(v)) changed->push_back(global[v]);
   }
-}
-
-// Of a vertex with faces in several bricks, each of them may say that these have changed.
-void BrickMerger::note_settled(std::uint32_t vertex, bool before, bool is) {
-  if (is != before) std::atomic_ref(state_.settled[vertex]).store(is ? 1 : 0, std::memory_order_relaxed);
 }
 
 // Increasing: choices among equals then depend little on where bricks are. Notes the brick's own ones in `local_`.

@@ -44,7 +44,6 @@ class BrickMerger {
   void merge_those(const SurfaceBricks& bricks, const std::vector<std::uint32_t>& asked,
                    std::vector<std::vector<std::uint32_t>>* changed);
   void merge_one(const SurfaceBricks& bricks, std::uint32_t brick, std::vector<std::uint32_t>* changed);
-  void note_settled(std::uint32_t vertex, bool before, bool is);
   [[nodiscard]] std::vector<std::uint32_t> vertices_of(const SurfaceBricks& bricks, std::uint32_t brick);
   [[nodiscard]] SurfacePatch patch_of(const SurfaceBricks& bricks, std::uint32_t brick,
                                       const std::vector<std::uint32_t>& global);

@@ -38,8 +38,8 @@ double on_side(int side, double critical, double w) {
                   : std::min(w, std::nextafter(critical, -kInfinity));
 }
 
-DirectedEdge directed(const Vec3& from, const Vec3& to, bool reversed, std::int32_t multiplicity) {
-  return reversed ? DirectedEdge{to, from, multiplicity} : DirectedEdge{from, to, multiplicity};
+DirectedEdge directed(const Vec3& from, const Vec3& to, std::int32_t multiplicity) {
+  return multiplicity < 0 ? DirectedEdge{to, from, -multiplicity} : DirectedEdge{from, to, multiplicity};
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ void Boundary::add_chains(const TriangleMesh& mesh, const std::vector<ExteriorEd
     if (!previous || previous->to != e.from) steps.push_back({mesh.vertices[e.from], false, false});
     const Vec3 &from = mesh.vertices[e.from], &to = mesh.vertices[e.to];
     const bool along_rays = projects_to_a_point(from, to);
-    if (along_rays) edges_along_rays_.push_back(directed(from, to, e.multiplicity < 0, multiplicity));
+    if (along_rays) edges_along_rays_.push_back(directed(from, to, e.multiplicity));
     steps.push_back({to, !along_rays, e.multiplicity < 0});
     total_multiplicity_ += multiplicity;
     previous = &e;
@@ -75,7 +75,8 @@ std::vector<DirectedEdge> Boundary::directed_edges() const {
   for (const ChainGroup& group : groups_) {
     for (std::size_t i = 1; i < group.steps.size(); ++i) {
       const ChainStep& step = group.steps[i];
-      if (step.joined) edges.push_back(directed(group.steps[i - 1].to, step.to, step.reversed, group.multiplicity));
+      const std::int32_t multiplicity = step.reversed ? -group.multiplicity : group.multiplicity;
+      if (step.joined) edges.push_back(directed(group.steps[i - 1].to, step.to, multiplicity));
     }
   }
   return edges;

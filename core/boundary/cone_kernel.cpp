@@ -113,9 +113,8 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, 
       if ((done >> lane) & 1U) continue;
       if ((plain >> lane) & 1U) {
         multiply_one(products, i + lane, re[lane], im[lane]);
-      } else if (const auto f = edge_factor(chunk.vertex(n), chunk.vertex(n + 1), chunk.orientation[n] < 0.0, q,
-                                            rays.side(n, q))) {
-        multiply_one(products, i + lane, f->re, f->im);
+      } else if (const auto f = edge_factor(chunk.vertex(n), chunk.vertex(n + 1), q, rays.side(n, q))) {
+        multiply_one(products, i + lane, f->re, chunk.orientation[n] * f->im);
       }
     }
   }

@@ -43,17 +43,10 @@ Factor<double> generic_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
 
 bool on_one_side(double a, double b, double of) { return (a < of && b < of) || (a > of && b > of); }
 
-// tied_factor(), max(|re|, |im|) in [1, 2).
-std::optional<Factor<double>> rounded_tied_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
-  const std::optional<Factor<long double>> f = tied_factor<long double>(a, b, q);
-  if (!f) return std::nullopt;
-  const int exponent = -std::ilogb(std::max(std::abs(f->re), f->im));
-  return Factor<double>{static_cast<double>(std::scalbn(f->re, exponent)),
-                        static_cast<double>(std::scalbn(f->im, exponent))};
-}
-
-}  // namespace
-
+// For an edge with D = 0 that does not project to a point (docs/method.md, "Exact zeros"): the line through the query
+// along the ray meets the edge's line. Re and |Im| of a number with the argument of z_ab(q), of any magnitude, each
+// rounded once to Real; the sign of Im is that of edge_side(). Nothing where the argument is 0. Real: long double or
+// Quad, for their exponents: nothing over- or underflows.
 template <class Real>
 std::optional<Factor<Real>> tied_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
   if (on_one_side(a.y, b.y, q.y) || on_one_side(a.z, b.z, q.z)) return std::nullopt;  // as most are
@@ -67,32 +60,39 @@ std::optional<Factor<Real>> tied_factor(const Vec3& a, const Vec3& b, const Vec3
   return meeting_side(a, b, q) > 0 ? std::optional(factor(-1, 0)) : std::nullopt;
 }
 
-template std::optional<Factor<long double>> tied_factor<long double>(const Vec3&, const Vec3&, const Vec3&);
-template std::optional<Factor<Quad>> tied_factor<Quad>(const Vec3&, const Vec3&, const Vec3&);
+// tied_factor(), max(|re|, |im|) in [1, 2).
+std::optional<Factor<double>> rounded_tied_factor(const Vec3& a, const Vec3& b, const Vec3& q) {
+  const std::optional<Factor<long double>> f = tied_factor<long double>(a, b, q);
+  if (!f) return std::nullopt;
+  const int exponent = -std::ilogb(std::max(std::abs(f->re), f->im));
+  return Factor<double>{static_cast<double>(std::scalbn(f->re, exponent)),
+                        static_cast<double>(std::scalbn(f->im, exponent))};
+}
 
-std::optional<Factor<double>> edge_factor(const Vec3& a, const Vec3& b, bool reversed, const Vec3& q,
-                                          const EdgeSide& side) {
+}  // namespace
+
+std::optional<Factor<double>> edge_factor(const Vec3& a, const Vec3& b, const Vec3& q, const EdgeSide& side) {
   if (side.sign == 0) return std::nullopt;  // projects to a point
   const std::optional<Factor<double>> f =
       side.tie ? rounded_tied_factor(a, b, q) : std::optional(generic_factor(a, b, q));
   if (!f) return std::nullopt;
-  return scaled({f->re, std::copysign(f->im, reversed ? -side.sign : side.sign)});
+  return scaled({f->re, std::copysign(f->im, side.sign)});
 }
 
-std::optional<NearEdgeFactor<Quad>> close_edge_factor(const Vec3& a, const Vec3& b, bool reversed, const Vec3& q) {
-  const EdgeSide side = edge_side(a, b, q);
+std::optional<NearEdgeFactor<Quad>> close_edge_factor(const Vec3& from, const ChainStep& step, const Vec3& q) {
+  const EdgeSide side = edge_side(from, step.to, q);
   if (side.sign == 0) return std::nullopt;
   NearEdgeFactor<Quad> result{{}, 0};
   if (side.tie) {
-    const std::optional<Factor<Quad>> f = tied_factor<Quad>(a, b, q);
+    const std::optional<Factor<Quad>> f = tied_factor<Quad>(from, step.to, q);
     if (!f) return std::nullopt;
     result.factor = *f;
   } else {
-    result = near_edge_factor<Quad>(a, b, q);
+    result = near_edge_factor<Quad>(from, step.to, q);
   }
   Quad& im = result.factor.im;
   im = im == 0 ? 0 : absolute(im);
-  if ((reversed ? -side.sign : side.sign) < 0) im = -im;
+  if ((step.reversed ? -side.sign : side.sign) < 0) im = -im;
   return result;
 }
 

@@ -46,8 +46,7 @@ TurnsWithin enclose_in_113(const ChainGroup& group, const Vec3& q) {
   for (std::size_t i = 1; i < group.steps.size(); ++i) {
     const ChainStep& step = group.steps[i];
     if (!step.joined) continue;
-    if (const auto f = close_edge_factor(group.steps[i - 1].to, step.to, step.reversed, q))
-      product.multiply(f->factor, f->error);
+    if (const auto f = close_edge_factor(group.steps[i - 1].to, step, q)) product.multiply(f->factor, f->error);
   }
   return turns_of(product.z, product.turns, product.error);
 }

@@ -137,8 +137,8 @@ HWY_INLINE FactorLanes no_factor() {
 }
 
 // Replaces those that are not trusted.
-HWY_NOINLINE FactorLanes with_careful_lanes(const FactorLanes& plain, LaneMask trusted, const Vec3& a, const Vec3& b,
-                                            bool reversed, const SampleTile& samples, std::size_t i) {
+HWY_NOINLINE FactorLanes with_careful_lanes(const FactorLanes& plain, LaneMask trusted, const Vec3& from,
+                                            const ChainStep& step, const SampleTile& samples, std::size_t i) {
   alignas(64) std::array<double, kMostLanes> re_high, re_low, im_high, im_low, error;
   hn::Store(plain.re.high, d, re_high.data());
   hn::Store(plain.re.low, d, re_low.data());
@@ -148,7 +148,7 @@ HWY_NOINLINE FactorLanes with_careful_lanes(const FactorLanes& plain, LaneMask t
   const std::uint32_t bits = bits_of(trusted);
   for (std::size_t lane = 0; lane < std::min(hn::Lanes(d), samples.count - i); ++lane) {
     if ((bits >> lane) & 1U) continue;
-    const auto close = close_edge_factor(a, b, reversed, samples.query(i + lane));
+    const auto close = close_edge_factor(from, step, samples.query(i + lane));
     const PairFactor f = close ? normalized(*close) : PairFactor{{1}, {kTiny}, 0};
     re_high[lane] = f.re.high;
     re_low[lane] = f.re.low;
@@ -203,8 +203,8 @@ HWY_INLINE PairProductLanes product_of_all(std::span<const ChainStep> steps, con
       if (steps[n].reversed) f.im = {hn::Neg(f.im.high), hn::Neg(f.im.low)};
       if (HWY_UNLIKELY(!hn::AllTrue(d, trusted))) {
         const auto none = is_level_beside(from.y.high, from.z.high, to.y.high, to.z.high);
-        f = with_careful_lanes(choice(none, no_factor(), f), hn::Or(trusted, none), steps[n - 1].to, steps[n].to,
-                               steps[n].reversed, samples, i);
+        f = with_careful_lanes(choice(none, no_factor(), f), hn::Or(trusted, none), steps[n - 1].to, steps[n], samples,
+                               i);
       }
       product = times(product, f);
     }

@@ -50,8 +50,8 @@ MUTANTS = [
 
     # --- Exact signs, shared ---
     Mutant("sign_not_shared", "the cone takes the sign of D from edge_side, as crossings do", [
-        ("core/boundary/edge_factor.cpp", "std::copysign(f->im, reversed ? -side.sign : side.sign)",
-         "side.tie ? std::copysign(f->im, reversed ? -side.sign : side.sign) : reversed ? -f->im : f->im")]),
+        ("core/boundary/edge_factor.cpp", "std::copysign(f->im, side.sign)",
+         "side.tie ? std::copysign(f->im, side.sign) : f->im")]),
     Mutant("kernel_trusts_any_sign", "the SIMD kernel multiplies only factors whose sign is sure", [
         ("core/boundary/edge_lanes-inl.h", "hn::IfThenElse(sure, im, hn::NaN(d))", "((void)sure, im)")]),
     Mutant("side_filter_too_small", "floating point decides only where its error bound vouches for it", [
@@ -396,7 +396,7 @@ MUTANTS = [
     Mutant("enclosure_in_double", "differences to the query are exact", [
         ("core/boundary/enclosure_kernel.cpp", "const Pair y = exact_sum(hn::Set(d, v.y), hn::Neg(q.y))", "const Pair y{hn::Sub(hn::Set(d, v.y), q.y), hn::Zero(d)}")]),
     Mutant("enclosure_loses_signs", "in 113 bits, too, a factor has the sign of its side", [
-        ("core/boundary/edge_factor.cpp", "if ((reversed ? -side.sign : side.sign) < 0) im = -im;", "")]),
+        ("core/boundary/edge_factor.cpp", "if ((step.reversed ? -side.sign : side.sign) < 0) im = -im;", "")]),
     Mutant("enclosure_of_nothing", "what stands for 0 is 0 in the end", [
         ("core/boundary/enclosure.cpp", "std::abs(high) < kNoPart ?", "std::abs(high) < 0 ?")]),
     Mutant("enclosure_products_round_nothing", "a product rounds, too", [

@@ -12,10 +12,11 @@ bool has_chosen_precision(FieldKind kind) {
 }
 
 template <typename Value>
-Value level_set_background(double band_width, double voxel, bool half) {
+Value level_set_background(double band_width, double voxel, Precision precision) {
   auto background = static_cast<Value>(band_width);
   const auto stored = [&] {
-    return half ? static_cast<Value>(nearest_half(static_cast<double>(background))) : background;
+    if (precision != Precision::kHalf) return background;
+    return static_cast<Value>(nearest_half(static_cast<double>(background)));
   };
   while (static_cast<double>(stored()) / voxel < band_width / voxel) {
     background = std::nextafter(std::max(background, stored()), std::numeric_limits<Value>::infinity());
@@ -24,15 +25,15 @@ Value level_set_background(double band_width, double voxel, bool half) {
 }
 
 template <typename Value>
-Value next_within(Value background, bool half) {
-  if (half) return -static_cast<Value>(next_half_above(-static_cast<float>(background)));
+Value next_within(Value background, Precision precision) {
+  if (precision == Precision::kHalf) return -static_cast<Value>(next_half_above(-static_cast<float>(background)));
   return std::nextafter(background, Value{0});
 }
 
-template float next_within(float, bool);
-template double next_within(double, bool);
+template float next_within(float, Precision);
+template double next_within(double, Precision);
 
-template float level_set_background(double, double, bool);
-template double level_set_background(double, double, bool);
+template float level_set_background(double, double, Precision);
+template double level_set_background(double, double, Precision);
 
 }  // namespace raycone::vdb

@@ -15,14 +15,14 @@ namespace raycone::vdb {
 // Whether the user chooses the precision of fields of this kind: of all but diagnostics.
 [[nodiscard]] bool has_chosen_precision(FieldKind kind);
 
-// The least value that is no narrower than the band, also as OpenVDB's checkLevelSet measures it: in voxels. With
-// `half`, of those that fit in 16 bits. Value: float or double.
+// The least value of a precision that is no narrower than the band, also as OpenVDB's checkLevelSet measures it: in
+// voxels. Value: double for Precision::kDouble, else float.
 template <typename Value>
-[[nodiscard]] Value level_set_background(double band_width, double voxel, bool half);
+[[nodiscard]] Value level_set_background(double band_width, double voxel, Precision precision);
 
 // The next such value towards 0.
 template <typename Value>
-[[nodiscard]] Value next_within(Value background, bool half);
+[[nodiscard]] Value next_within(Value background, Precision precision);
 
 // A byte, as several threads cannot write to the bits of one.
 struct StoreFlag {

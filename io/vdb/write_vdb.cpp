@@ -200,9 +200,9 @@ template <typename Grid, typename Store>
 std::unique_ptr<GridBuilder> make_level_set_builder(const GridPlan& plan, const Store& store) {
   using Value = typename Grid::ValueType;
   const double band_width = plan.field.background;
-  const bool half = plan.description.is(Precision::kHalf);
-  const auto background = vdb::level_set_background<Value>(band_width, plan.lattice.grid.spacing.x, half);
-  const vdb::StoreDistance<Store> stored{band_width, background, vdb::next_within(background, half), store};
+  const Precision precision = plan.description.precision.value_or(Precision::kSingle);
+  const auto background = vdb::level_set_background<Value>(band_width, plan.lattice.grid.spacing.x, precision);
+  const vdb::StoreDistance<Store> stored{band_width, background, vdb::next_within(background, precision), store};
   return make_builder<Grid>(plan, stored, background);
 }
 

@@ -131,14 +131,14 @@ bool is_list(const std::string& operand) { return operand.starts_with('@') || op
 std::string result_options(const std::string& format, const MeshValues& of_mesh) {
   static const OptionNames known = option_names(batch_spec());
   const std::set<std::string> without_effect{"--no-clobber", "--engine", "--simd"};
-  const bool draws = of_mesh.contains("--sample");
+  const OwnDefaults& own = of_mesh.contains("--sample") ? kDefaultsOfDrawnPoints : kDefaultsOfLattices;
   std::string text = "--format=" + format;
   for (const auto& [name, given] : of_mesh) {
     if (without_effect.contains(name)) continue;
     // Of the grid batches keep the hash.
     const std::string value = name == "--like" ? like_without_directory(given.back()) : given.back();
     const std::string option = known.flags.contains(name) ? name : name + '=' + value;
-    if (!is_default(option, draws ? kDefaultOfPoints : kDefaultOfLattices, draws)) text += '\n' + option;
+    if (!is_default(option, own)) text += '\n' + option;
   }
   return text;
 }

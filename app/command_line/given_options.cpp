@@ -40,21 +40,20 @@ bool are_same(std::string_view option, std::string_view other) {
 
 }  // namespace
 
-bool is_default(const std::string& option, std::string_view own_default, bool draws) {
+bool is_default(const std::string& option, const OwnDefaults& own) {
   static constexpr std::array<std::string_view, 13> kDefaults{
       "--band=3", "--orient=keep", "--resolution=64", "--rule=threshold=0.5", "--scale=1",
       "--seed=1", "--at=50%",      "--weld=exact",    "--simplify=0",         "--tolerance=1e-10",
       "--axis=z", "--size=1024",   "--parts=file"};
   const auto is_same = [&](std::string_view usual) { return are_same(option, usual); };
-  const bool is_field = !draws && option == "--field=winding";  // more is asked about drawn points
-  return is_field || is_same(own_default) || std::ranges::any_of(kDefaults, is_same);
+  return is_same(own.field) || is_same(own.dtype) || std::ranges::any_of(kDefaults, is_same);
 }
 
 std::string like_without_directory(const std::string& value) {
   return std::filesystem::path(value).filename().string();
 }
 
-std::vector<std::string> given_options(const Values& values, const OptionNames& known, std::string_view own_default) {
+std::vector<std::string> given_options(const Values& values, const OptionNames& known, const OwnDefaults& own) {
   static const std::set<std::string> without_effect{
       "--depfile", "--engine", "--format", "--memory-limit", "--no-clobber", "--output", "--progress", "--quiet",
       "--report",  "--simd",   "--strict", "--threads",      "--timeout",    "--values", "--verify"};
@@ -64,7 +63,7 @@ std::vector<std::string> given_options(const Values& values, const OptionNames& 
     for (const std::string& text : values_that_count(name, given)) {
       const std::string value = name == "--like" ? like_without_directory(text) : text;
       std::string option = known.flags.contains(name) ? name : name + '=' + value;
-      if (!is_default(option, own_default, values.given("--sample"))) options.push_back(std::move(option));
+      if (!is_default(option, own)) options.push_back(std::move(option));
     }
   }
   return options;

@@ -11,20 +11,24 @@
 namespace raycone {
 
 // Defaults that commands do not share.
-inline constexpr std::string_view kDefaultOfLattices = "--dtype=f32";
-inline constexpr std::string_view kDefaultOfPoints = "--dtype=f64";
+struct OwnDefaults {
+  std::string_view dtype{};  // nothing where there is no such option
+  std::string_view field = "--field=winding";
+};
+inline constexpr OwnDefaults kDefaultsOfLattices{.dtype = "--dtype=f32"};
+inline constexpr OwnDefaults kDefaultsOfPoints{.dtype = "--dtype=f64"};
+inline constexpr OwnDefaults kDefaultsOfDrawnPoints{.dtype = "--dtype=f64", .field = ""};  // more is asked about them
 
-// Whether "--name=value" holds where it is not given. `own_default`: one of those above, or nothing. `draws`: whether
-// --sample is there.
-[[nodiscard]] bool is_default(const std::string& option, std::string_view own_default, bool draws);
+// Whether "--name=value" holds where it is not given.
+[[nodiscard]] bool is_default(const std::string& option, const OwnDefaults& own);
 
 // The value of --like, FILE[:NAME], without the directory: results depend on what the grid is, not on where.
 [[nodiscard]] std::string like_without_directory(const std::string& value);
 
 // The options that results depend on, "--name=value" or "--name", by name: not those that say where results go, what a
 // run may use or what it prints, and not what would hold anyway. Files are named without their directories. `known`:
-// the command's. `own_default`: as above.
+// the command's.
 [[nodiscard]] std::vector<std::string> given_options(const Values& values, const OptionNames& known,
-                                                     std::string_view own_default = {});
+                                                     const OwnDefaults& own = {});
 
 }  // namespace raycone

@@ -190,7 +190,7 @@ Command parse_lattice(const Values& values) {
   check_one_field(command);
   check_halves(command.encoding);
   parse_compress(values, command.encoding);
-  command.run.options = given_options(values, option_names(lattice_spec()), kDefaultOfLattices);
+  command.run.options = given_options(values, option_names(lattice_spec()), kDefaultsOfLattices);
   refuse_idle_options(values, command);
   return command;
 }

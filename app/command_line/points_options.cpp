@@ -132,7 +132,8 @@ Command parse_points(const Values& given) {
   command.output = parse_output_files(values);
   command.encoding = parse_encoding(values, command.output, output_formats(command));
   check_npy_columns(command);
-  command.run.options = given_options(values, option_names(points_spec()), kDefaultOfPoints);
+  command.run.options =
+      given_options(values, option_names(points_spec()), command.sample ? kDefaultsOfDrawnPoints : kDefaultsOfPoints);
   refuse_idle_options(values, command);
   return command;
 }

@@ -90,9 +90,11 @@ class LatticeLabels {
 // Of many small parts, each reaches few of the points.
 class PointsByX {
  public:
-  PointsByX(std::span<const Vec3> points, bool sorted) : points_(points), sorted_(sorted), order_(points.size()) {
+  // To be asked about as many intervals as there are parts.
+  PointsByX(std::span<const Vec3> points, std::size_t parts)
+      : points_(points), sorted_(parts > kWorthSorting), order_(points.size()) {
     std::iota(order_.begin(), order_.end(), 0U);
-    if (sorted) std::ranges::stable_sort(order_, {}, [this](std::uint32_t n) { return points_[n].x; });
+    if (sorted_) std::ranges::stable_sort(order_, {}, [this](std::uint32_t n) { return points_[n].x; });
   }
 
   // At least the points whose x lies in `interval`.
@@ -105,6 +107,8 @@ class PointsByX {
   }
 
  private:
+  static constexpr std::size_t kWorthSorting = 16;  // parts
+
   std::span<const Vec3> points_;
   bool sorted_;
   std::vector<std::uint32_t> order_;
@@ -157,9 +161,8 @@ PointLabels::PointLabels(LabelledParts& parts, const FieldOptions& field, double
 
 void PointLabels::evaluate(std::span<const Vec3> points, std::span<std::int32_t> labels) {
   std::ranges::fill(labels, 0);
-  constexpr std::size_t kWorthSorting = 16;  // parts
   const bool keeps_labels = parts_.priority() == PartPriority::kFirst;
-  const PointsByX by_x(points, evaluators_.size() > kWorthSorting);
+  const PointsByX by_x(points, evaluators_.size());
   std::vector<Vec3> reached;
   std::vector<std::size_t> numbers;  // of these among the points
   for (std::size_t part = 0; part < evaluators_.size(); ++part) {

@@ -23,6 +23,7 @@
 #include "app/run/mesh_run.h"
 #include "app/samples/disk_space.h"
 #include "app/samples/sampled_points.h"
+#include "core/data/vertex_precision.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
@@ -62,8 +63,9 @@ bool next(PointReader& reader, const PointBatch& batch, std::vector<Vec3>& point
 }
 
 // Points that are drawn lie where fewer digits can say it, so that values belong to what is stored.
-bool draws_single(const PointsCommand& command) {
-  return command.sample && command.encoding.precision.value_or(Precision::kDouble) != Precision::kDouble;
+VertexPrecision drawn_precision(const PointsCommand& command) {
+  const Precision values = command.encoding.precision.value_or(Precision::kDouble);
+  return command.sample && values != Precision::kDouble ? VertexPrecision::kSingle : VertexPrecision::kDouble;
 }
 
 // Null where points are to be drawn, which takes the mesh.
@@ -116,7 +118,7 @@ struct PointWork {
 // full disk; where the output is a file, its own head is completed at the end.
 std::unique_ptr<PointWriter> open_writer(const PointsCommand& command, const PointReader& reader, MeshRun& run) {
   OutputDescription description = description_of(run.report, command.field, command.encoding);
-  description.single_points = draws_single(command);
+  description.single_points = drawn_precision(command) == VertexPrecision::kSingle;
   description.has_places = command.sample && draws_on_surface(*command.sample);
   const bool is_certain = reader.has_certain_size();
   if (is_certain) run.output.reserve(least_point_file(command.encoding.format, description, *reader.size()));
@@ -200,7 +202,7 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
   run.print_warnings();
   if (command.sample) {
     work.reader = timed(report.seconds.prepare,
-                        [&] { return draw_points(report.mesh, mesh, *command.sample, draws_single(command)); });
+                        [&] { return draw_points(report.mesh, mesh, *command.sample, drawn_precision(command)); });
   }
 
   prepare(command, std::move(mesh), parts ? &*parts : nullptr, run, work);

@@ -1,7 +1,6 @@
 #include "app/samples/sampled_points.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -15,8 +14,11 @@ namespace {
 
 class SampledPoints final : public PointReader {
  public:
-  SampledPoints(std::string name, PointSampler sampler, bool single, bool on_surface)
-      : name_(std::move(name)), sampler_(std::move(sampler)), single_(single), on_surface_(on_surface) {}
+  SampledPoints(std::string name, PointSampler sampler, const SampleRequest& request, VertexPrecision precision)
+      : name_(std::move(name)),
+        sampler_(std::move(sampler)),
+        precision_(precision),
+        on_surface_(draws_on_surface(request)) {}
 
   bool next(std::vector<Vec3>& batch, std::size_t max) override {
     batch.resize(static_cast<std::size_t>(std::min<std::uint64_t>(max, sampler_.size() - drawn_)));
@@ -26,7 +28,9 @@ class SampledPoints final : public PointReader {
     } else {
       sampler_.draw(drawn_, batch);
     }
-    if (single_) round_to_floats(batch);
+    round_to(precision_, batch);
+    if (precision_ == VertexPrecision::kSingle && !std::ranges::all_of(batch, is_finite))
+      throw LimitError(name_ + ": points are too large for 32 bits; see --dtype and --scale");
     drawn_ += batch.size();
     return !batch.empty();
   }
@@ -39,20 +43,10 @@ class SampledPoints final : public PointReader {
   [[nodiscard]] std::optional<std::uint64_t> size() const override { return sampler_.size(); }
 
  private:
-  void round_to_floats(std::vector<Vec3>& points) const {
-    for (Vec3& point : points) {
-      for (int axis = 0; axis < 3; ++axis) {
-        const double rounded = static_cast<double>(static_cast<float>(point[axis]));
-        if (!std::isfinite(rounded))
-          throw LimitError(name_ + ": points are too large for 32 bits; see --dtype and --scale");
-        point[axis] = rounded;
-      }
-    }
-  }
-
   std::string name_;  // of the mesh's file
   PointSampler sampler_;
-  bool single_, on_surface_;
+  VertexPrecision precision_;
+  bool on_surface_;
   std::vector<std::int64_t> faces_;
   std::vector<Vec3> normals_;
   std::uint64_t drawn_ = 0;
@@ -66,14 +60,13 @@ bool draws_on_surface(const SampleRequest& request) {
 }
 
 std::unique_ptr<PointReader> draw_points(const std::string& name, const TriangleMesh& mesh,
-                                         const SampleRequest& request, bool single) {
+                                         const SampleRequest& request, VertexPrecision precision) {
   const Box box = widened(request.bounds.value_or(bounding_box(mesh)), request.padding);
   PointSampler sampler(mesh, box, request.groups, request.seed);
-  if (!sampler.has_needed_area())
-    throw InputError(name + ": no triangle has an area, expected a surface to draw from");
+  if (!sampler.has_needed_area()) throw InputError(name + ": no triangle has an area, expected a surface to draw from");
   if (!sampler.is_finite())
     throw LimitError(name + ": box or noise is too large, expected points within double precision; see --scale");
-  return std::make_unique<SampledPoints>(name, std::move(sampler), single, draws_on_surface(request));
+  return std::make_unique<SampledPoints>(name, std::move(sampler), request, precision);
 }
 
 }  // namespace raycone

@@ -6,15 +6,16 @@
 
 #include "app/options/points_command.h"
 #include "core/data/triangle_mesh.h"
+#include "core/data/vertex_precision.h"
 #include "io/points/read_points.h"
 
 namespace raycone {
 
-// `name`: the file that `mesh` is from; `single`: coordinates are floats. Throws UsageError where the padding leaves
-// nothing of the box, InputError where points near the surface are asked for and there is none, LimitError where points
-// would not be finite.
+// `name`: the file that `mesh` is from; `precision`: of coordinates. Throws UsageError where the padding leaves nothing
+// of the box, InputError where points near the surface are asked for and there is none, LimitError where points would
+// not be finite.
 [[nodiscard]] std::unique_ptr<PointReader> draw_points(const std::string& name, const TriangleMesh& mesh,
-                                                       const SampleRequest& request, bool single);
+                                                       const SampleRequest& request, VertexPrecision precision);
 
 // Whether some of the points lie on the surface, so that they have normals and faces.
 [[nodiscard]] bool draws_on_surface(const SampleRequest& request);

@@ -1,4 +1,4 @@
-// How precisely the vertices of a surface are stored.
+// How precisely the vertices of a surface, or points that are drawn, are stored.
 #pragma once
 
 #include <vector>

@@ -29,7 +29,7 @@ bool is_everywhere(double band, const Lattice& lattice) {
 }
 
 double grid_memory(const Lattice& lattice, const FieldDescription& field, const OutputDescription& description,
-                   bool open) {
+                   SlabKind kind) {
   const double layer = static_cast<double>(lattice.counts[0]) * static_cast<double>(lattice.counts[1]);
   const double samples = layer * static_cast<double>(lattice.counts[2]);
   // Those of leaves that a surface through the whole lattice meets at least.
@@ -39,15 +39,15 @@ double grid_memory(const Lattice& lattice, const FieldDescription& field, const 
   switch (field.kind) {
     case FieldKind::kReal:
     case FieldKind::kDensity:
-      return real_bytes * ((open ? samples : at_surface) + blocks_in_the_making);
+      return real_bytes * ((kind.open ? samples : at_surface) + blocks_in_the_making);
     case FieldKind::kDistance: {
       const bool all = is_everywhere(field.background / lattice.spacing.x, lattice);
       return real_bytes * ((all ? samples : at_surface) + blocks_in_the_making);
     }
     case FieldKind::kVector:
-      return 3 * real_bytes * ((open ? samples : 0.0) + blocks_in_the_making);
+      return 3 * real_bytes * ((kind.open ? samples : 0.0) + blocks_in_the_making);
     case FieldKind::kBound:
-      return sizeof(float) * ((open ? samples : 0.0) + blocks_in_the_making);
+      return sizeof(float) * ((kind.open ? samples : 0.0) + blocks_in_the_making);
     case FieldKind::kCount:
       return sizeof(float) * blocks_in_the_making;
     case FieldKind::kLabel:
@@ -104,7 +104,7 @@ double writer_memory(const Lattice& lattice, FieldFormat format, const OutputDes
   }
   if (format != FieldFormat::kVdb) return 0.0;
   double bytes = 0.0;
-  for (const FieldDescription& field : description.fields) bytes += grid_memory(lattice, field, description, kind.open);
+  for (const FieldDescription& field : description.fields) bytes += grid_memory(lattice, field, description, kind);
   return bytes;
 }
 

@@ -51,7 +51,7 @@ bool is_fan(const TriangleMesh& mesh, std::uint32_t vertex, std::span<const std:
   steps.clear();
   for (const std::uint32_t face : faces) {
     const Triangle& t = mesh.triangles[face];
-    const std::size_t at = t[0] == vertex ? 0 : t[1] == vertex ? 1 : 2;
+    const std::size_t at = place_in(t, vertex);
     steps.emplace_back(t[(at + 1) % 3], t[(at + 2) % 3]);
   }
   if (steps.empty()) return false;

@@ -17,6 +17,11 @@ using Triangle = std::array<std::uint32_t, 3>;
 // Whether two corners are one vertex.
 [[nodiscard]] inline bool is_collapsed(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
 
+// The place of a corner among the three.
+[[nodiscard]] inline std::size_t place_in(const Triangle& t, std::uint32_t corner) {
+  return t[0] == corner ? 0 : t[1] == corner ? 1 : 2;
+}
+
 // Evaluators count the triangles at an edge and along a ray in 32 bits, with a sign.
 inline constexpr std::size_t kMaxTriangles = 0x7FFFFFFF;
 

@@ -80,7 +80,7 @@ class Simplifier {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> sides;
     for (const std::uint32_t face : star_[v]) {
       const Triangle& t = surface_.mesh.triangles[face];
-      const std::size_t at = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+      const std::size_t at = place_in(t, v);
       sides.emplace_back(t[(at + 1) % 3], t[(at + 2) % 3]);
     }
     std::vector<std::uint32_t> ring{sides.front().first};

@@ -18,19 +18,13 @@ struct FaceNeighbours::FiledEdge {
   [[nodiscard]] std::uint64_t key() const { return std::uint64_t{high} << 32 | face_and_direction; }
 };
 
-namespace {
-
-std::size_t corner_of(const Triangle& t, std::uint32_t from) { return t[0] == from ? 0 : t[1] == from ? 1 : 2; }
-
-}  // namespace
-
 FaceNeighbours::FaceNeighbours(const std::vector<Triangle>& faces, std::size_t vertices) : neighbours_(faces.size()) {
   const auto buckets = traversals_of<FiledEdge>(faces, vertices, [](std::size_t face, auto from, auto to) {
     return FiledEdge{std::min(from, to), std::max(from, to),
                      static_cast<std::uint32_t>(face) << 1 | std::uint32_t{from < to}};
   });
   const auto set_neighbour = [&](const FiledEdge& t, std::uint32_t bits) {
-    neighbours_[t.face()][corner_of(faces[t.face()], t.forward() ? t.low : t.high)] = bits;
+    neighbours_[t.face()][place_in(faces[t.face()], t.forward() ? t.low : t.high)] = bits;
   };
   std::vector<std::vector<UnpairedEdge>> unpaired(buckets.count());
   parallel_for_each(buckets.count(), [&](std::size_t n) {

@@ -26,10 +26,7 @@ class FacesAt {
   [[nodiscard]] const Vec3& position(std::uint32_t vertex) const { return mesh_.vertices[vertex]; }
   [[nodiscard]] std::uint32_t face_with(std::uint32_t from, std::uint32_t to) const {
     for (const std::uint32_t face : of(from)) {
-      const Triangle& t = triangle(face);
-      for (std::size_t i = 0; i < 3; ++i) {
-        if (t[i] == from && t[(i + 1) % 3] == to) return face;
-      }
+      if (has_side(triangle(face), from, to)) return face;
     }
     return kNoFace;
   }

@@ -19,6 +19,11 @@ namespace raycone {
 
 inline constexpr std::uint32_t kNoFace = UINT32_MAX;
 
+// Whether a triangle has this side, in this direction.
+[[nodiscard]] inline bool has_side(const Triangle& t, std::uint32_t from, std::uint32_t to) {
+  return (t[0] == from && t[1] == to) || (t[1] == from && t[2] == to) || (t[2] == from && t[0] == to);
+}
+
 // A side of a face of a gap, in its direction, and the face beyond.
 struct GapSide {
   std::uint32_t from, to, face, beyond;

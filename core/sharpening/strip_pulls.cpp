@@ -69,10 +69,7 @@ std::uint32_t StripPulls::face_with(std::uint32_t from, std::uint32_t to) const 
   const std::uint32_t end = place(from) != Sharpener::kNoPlace ? from : to;
   if (place(end) == Sharpener::kNoPlace) return kNoFace;
   for (const std::uint32_t face : faces(end)) {
-    const Triangle& t = state_.triangles[face];
-    for (std::size_t i = 0; i < 3; ++i) {
-      if (t[i] == from && t[(i + 1) % 3] == to) return face;
-    }
+    if (has_side(state_.triangles[face], from, to)) return face;
   }
   return kNoFace;
 }

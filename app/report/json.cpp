@@ -75,9 +75,11 @@ Json to_object(const SurfaceReport& surface) {
           {"dropped_area", surface.dropped_area}};
 }
 
-Json names_of(const std::vector<PartReport>& parts) {
+// Of parts or warnings.
+template <class Named>
+Json names_of(const std::vector<Named>& all) {
   Json names = Json::array();
-  for (const PartReport& part : parts) names.push_back(part.name);
+  for (const Named& one : all) names.push_back(one.name);
   return names;
 }
 
@@ -98,12 +100,6 @@ Json to_array(const std::vector<FileRead>& meshes) {
   Json array = Json::array();
   for (const FileRead& mesh : meshes) array.push_back({{"mesh", mesh.path}, {"sha256", mesh.sha256}});
   return array;
-}
-
-Json names_of(const std::vector<Warning>& warnings) {
-  Json names = Json::array();
-  for (const Warning& warning : warnings) names.push_back(warning.name);
-  return names;
 }
 
 Json lines_of(const std::vector<Warning>& warnings) {

@@ -19,9 +19,7 @@ class ChainPlace {
   ChainPlace(const SurfaceCells& cells, double margin) : cells_(cells), margin_(margin) {}
 
   [[nodiscard]] bool holds(const Vec3& p, const SurfaceCell& cell, std::span<const unsigned> chain) const {
-    const Vec3 low = cells_.corner(cell, 0);
-    const Vec3& h = cells_.lattice().spacing;
-    const std::array<double, 3> at{(p.x - low.x) / h.x, (p.y - low.y) / h.y, (p.z - low.z) / h.z};
+    const std::array<double, 3> at = place_in(cell, p);
     double last = 1.0;
     unsigned reached = 0;
     for (const unsigned corner : chain) {
@@ -34,13 +32,17 @@ class ChainPlace {
   }
 
   [[nodiscard]] bool holds(const Vec3& p, const SurfaceCell& cell) const {
-    const Vec3 low = cells_.corner(cell, 0);
-    const Vec3& h = cells_.lattice().spacing;
-    const std::array<double, 3> at{(p.x - low.x) / h.x, (p.y - low.y) / h.y, (p.z - low.z) / h.z};
+    const std::array<double, 3> at = place_in(cell, p);
     return std::ranges::all_of(at, [&](double x) { return x >= margin_ / 2 && x <= 1.0 - margin_ / 2; });
   }
 
  private:
+  // In fractions of the cell.
+  [[nodiscard]] std::array<double, 3> place_in(const SurfaceCell& cell, const Vec3& p) const {
+    const Vec3 low = cells_.corner(cell, 0);
+    const Vec3& h = cells_.lattice().spacing;
+    return {(p.x - low.x) / h.x, (p.y - low.y) / h.y, (p.z - low.z) / h.z};
+  }
   [[nodiscard]] static std::size_t first_axis(unsigned axes) { return (axes & 1U) != 0 ? 0 : (axes & 2U) != 0 ? 1 : 2; }
   [[nodiscard]] bool all_at(const std::array<double, 3>& at, unsigned axes, double where) const {
     for (std::size_t axis = 0; axis < at.size(); ++axis) {

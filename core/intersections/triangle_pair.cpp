@@ -17,10 +17,11 @@ struct Segment3 {
 
 bool is_flat(const Corners3& t) { return collinear(t[0], t[1], t[2]); }
 
-// Coordinates `axis` and `axis + 1`, cyclically, as the two that exact_edge_orientation() looks at.
+// Coordinates `axis` and `axis + 1`, cyclically, as the two that signs of edges look at.
+Vec3 in_plane(int axis, const Vec3& p) { return {0.0, p[axis], p[(axis + 1) % 3]}; }
+
 int orientation_in_plane(int axis, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto projected = [axis](const Vec3& p) { return Vec3{0.0, p[axis], p[(axis + 1) % 3]}; };
-  return exact_edge_orientation(projected(a), projected(b), projected(c));
+  return exact_edge_orientation(in_plane(axis, a), in_plane(axis, b), in_plane(axis, c));
 }
 
 // An axis along which the triangle, which has an area, does not become a segment.
@@ -168,10 +169,10 @@ bool meet_beyond_edge(const Corners3& s, const Corners3& t) {
   return orientation_in_plane(axis, from, to, s[2]) == orientation_in_plane(axis, from, to, t[2]);
 }
 
-// The sign of a turn in the same plane as orientation_in_plane(), where floating point is sure of it, else 0.
+// orientation_in_plane() where floating point is sure of it, else 0.
 int sure_turn(int axis, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto projected = [axis](const Vec3& p) { return Vec3{0.0, p[axis], p[(axis + 1) % 3]}; };
-  return sure_sign(determinant_from(projected(a), projected(a), projected(b), projected(c)));
+  const Vec3 origin = in_plane(axis, a);
+  return sure_sign(determinant_from(origin, origin, in_plane(axis, b), in_plane(axis, c)));
 }
 
 // Of the three planes of orientation_in_plane(), the one in which the triangle looks largest, up to rounding.

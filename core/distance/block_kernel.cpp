@@ -44,6 +44,16 @@ struct Group {
   }
 };
 
+// Where the samples from n on are.
+HWY_INLINE VectorLanes points_of(const Group& group, std::size_t n) {
+  return {hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
+}
+
+// beyond_error() in each lane.
+HWY_INLINE Lanes beyond_errors(Lanes squares) {
+  return hn::Add(hn::Mul(squares, hn::Set(d, kBeyondErrorFactor)), hn::Set(d, kBeyondErrorTerm));
+}
+
 // A triangle of a block.
 struct PlacedTriangle {
   const TrianglePack& pack;
@@ -54,7 +64,7 @@ struct PlacedTriangle {
 void take_care(const PlacedTriangle& placed, std::size_t first, LaneMask sure, AccurateTriangles& accurate,
                Group& group) {
   if (placed.pack.is_thin(placed.slot)) {
-    const VectorLanes ps{hn::Load(d, &group.x[first]), hn::Load(d, &group.y[first]), hn::Load(d, &group.z[first])};
+    const VectorLanes ps = points_of(group, first);
     const Lanes least = hn::Load(d, &group.least[first]);
     const AccurateTriangle& triangle = accurate.at(placed.place, [&] { return placed.pack.accurate(placed.slot); });
     const Lanes squares = squared_distances(triangle, ps, hn::Not(sure));
@@ -76,12 +86,12 @@ HWY_INLINE double lower_to(const PlacedTriangle& placed, AccurateTriangles& accu
   const std::size_t slot = placed.slot;
   Lanes largest = hn::Zero(d);
   for (std::size_t n = 0; n < kGroup; n += hn::Lanes(d)) {
-    const VectorLanes ps{hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
+    const VectorLanes ps = points_of(group, n);
     const Squares some = squared(SameTriangle(pack, slot), ps);
     const Lanes before = hn::Load(d, &group.least[n]);
     const Lanes least = hn::IfThenElse(some.sure, hn::Min(before, some.values), before);
     hn::Store(least, d, &group.least[n]);
-    const Lanes reach = hn::Add(hn::Mul(least, hn::Set(d, kBeyondErrorFactor)), hn::Set(d, kBeyondErrorTerm));
+    const Lanes reach = beyond_errors(least);
     const Lanes direction_from = hn::Set(d, pack.direction_from[slot]);
     const LaneMask settled = hn::Or(some.sure, hn::Gt(least_with_care(some.values, direction_from), reach));
     if (!hn::AllTrue(d, settled)) take_care(placed, n, settled, accurate, group);
@@ -153,9 +163,9 @@ HWY_INLINE bool may_be_nearer(const NearTriangles& near, std::size_t number, con
   const VectorLanes upper = in_all_lanes({near.upper[0][number], near.upper[1][number], near.upper[2][number]});
   LaneMask nearer = hn::FirstN(d, 0);
   for (std::size_t n = 0; n < kGroup; n += hn::Lanes(d)) {
-    const VectorLanes ps{hn::Load(d, &group.x[n]), hn::Load(d, &group.y[n]), hn::Load(d, &group.z[n])};
+    const VectorLanes ps = points_of(group, n);
     const Lanes least = hn::Load(d, &group.least[n]);
-    const Lanes limit = hn::Add(hn::Mul(least, hn::Set(d, kBeyondErrorFactor)), hn::Set(d, kBeyondErrorTerm));
+    const Lanes limit = beyond_errors(least);
     LaneMask here = hn::Lt(squared_between(lower, upper, ps, ps), limit);
     if (half_spaces.are_used) here = hn::AndNot(half_spaces.tell(near, number, ps, least), here);
     nearer = hn::Or(nearer, here);

@@ -40,11 +40,8 @@ PlacedLattice lattice_for(const LatticeCommand& command, const Box& box, std::ve
 
 // A band in voxels that all samples are in: as wide as the box of mesh and lattice is long, from corner to corner.
 double band_of_all(const Box& mesh_box, const PlacedLattice& lattice) {
-  const Box box = box_of(lattice);
-  Vec3 sides;
-  for (int axis = 0; axis < 3; ++axis) {
-    sides[axis] = std::max(mesh_box.upper[axis], box.upper[axis]) - std::min(mesh_box.lower[axis], box.lower[axis]);
-  }
+  const Box all = hull(mesh_box, box_of(lattice));
+  const Vec3 sides = all.upper - all.lower;
   constexpr double kLargest = std::numeric_limits<double>::max();
   constexpr double kMore = 1 + 1e-9;  // so that rounding cuts nothing off
   const double width = std::min(std::hypot(sides.x, sides.y, sides.z), kLargest / 2) * kMore;

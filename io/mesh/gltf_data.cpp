@@ -7,7 +7,6 @@
 #include <array>
 #include <fstream>  // which tiny_gltf.h takes, but does not include
 #include <limits>
-#include <sstream>
 #include <utility>
 
 #define TINYGLTF_IMPLEMENTATION

@@ -102,7 +102,7 @@ std::uint64_t degenerate_faces(const TriangleMesh& mesh) {
   return sum_over(mesh.triangles.size(), [&](std::size_t face) { return is_degenerate(mesh, face); });
 }
 
-// The same for equal positions.
+// Equal for equal positions.
 std::size_t hash_of(const Vec3& p) {
   std::uint64_t hash = 0;
   for (int axis = 0; axis < 3; ++axis) {

@@ -62,7 +62,7 @@ void bound_all_errors(const ScaledMesh& mesh, const LatticeRows& rows, const Val
 // In bricks of neighbours: nodes that are far from one sample are mostly far from all.
 constexpr std::size_t kBrick = 4;  // samples along each side
 
-// Those of the rows [j_begin, j_end) x [k_begin, k_end).
+// To the samples of the rows (j, k) of two ranges, each up to before its second number.
 void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, std::array<std::size_t, 2> j_range,
                    std::array<std::size_t, 2> k_range, std::span<double> values) {
   const std::size_t nx = rows.xs.size(), ny = rows.ys.size();

@@ -73,8 +73,8 @@ int sure_turn(int axis, const Vec3& a, const Vec3& b, const Vec3& c) {
 
 double sum_of(const Vec3& magnitudes) { return magnitudes.x + magnitudes.y + magnitudes.z; }
 
-// The same for the side of a point that is rounded. Each of six products is off by what one factor is, as above, times
-// the two others; they are not more than all of these, so trust has a factor of four to spare.
+// sure_turn() for the side of a point that is rounded. Each of six products is off by what one factor is, as above,
+// times the two others; they are not more than all of these, so trust has a factor of four to spare.
 int sure_side(const std::array<Vec3, 3>& triangle, const Vec3& p) {
   double most = largest_coordinate(p);
   for (const Vec3& corner : triangle) most = std::max(most, largest_coordinate(corner));

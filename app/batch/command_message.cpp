@@ -79,7 +79,7 @@ class Carrier {
   }
 
  private:
-  // ---- Numbers, text and containers ----
+  // --- Numbers, text and containers ---------------------------------------------------------------------------------
 
   template <typename Number>
   requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
@@ -124,7 +124,7 @@ class Carrier {
     if (!known) throw std::runtime_error("a command has an unknown alternative");
   }
 
-  // ---- Structs, of which each number of members is stated ----
+  // --- Structs, of which each number of members is stated -----------------------------------------------------------
 
   void carry(Vec3& vector) { carry_members<3>(vector); }
   void carry(Box& box) { carry_members<2>(box); }

@@ -59,7 +59,7 @@ double faces_of(const MeshFigures& f) { return static_cast<double>(f.faces); }
 double edges_of(const MeshFigures& f) { return static_cast<double>(f.exterior_edges); }
 double samples_of(const MeshFigures& f) { return static_cast<double>(f.samples); }
 
-// --- Warnings
+// --- Warnings -------------------------------------------------------------------------------------------------------
 
 constexpr const char* kNoWarning = "none";
 
@@ -105,7 +105,7 @@ std::string mesh_cell(const std::string& mesh, const std::string& message) {
 
 std::string warning_cell(const ResultRow& row) { return "<td class=\"warnings\">" + html_text(row.warnings) + "</td>"; }
 
-// --- Head
+// --- Head -----------------------------------------------------------------------------------------------------------
 
 // "2026-11-26 23:40 UTC"
 std::string readable_date(std::int64_t nanoseconds) {
@@ -140,7 +140,7 @@ std::string provenance(const BatchRecords& records) {
   return html;
 }
 
-// --- Summary
+// --- Summary --------------------------------------------------------------------------------------------------------
 
 // "1.25 ms", "99 s", "1:00:00".
 std::string readable_duration(double seconds) {
@@ -168,7 +168,7 @@ std::string tiles(const BatchRecords& records) {
   return html + "</div>\n";
 }
 
-// --- Plots
+// --- Plots ----------------------------------------------------------------------------------------------------------
 
 using Figure = double (*)(const MeshFigures&);
 
@@ -204,7 +204,7 @@ std::string plots(const BatchRecords& records) {
   return html + "</div>\n";
 }
 
-// --- Tables
+// --- Tables ---------------------------------------------------------------------------------------------------------
 
 std::string number_cell(double value, const std::string& text) {
   return "<td class=\"n\" data-v=\"" + with_digits(value, 9) + "\">" + html_text(text) + "</td>";

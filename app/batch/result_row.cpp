@@ -44,7 +44,7 @@ constexpr std::array kResultColumns{
 };
 constexpr std::size_t kFormerColumns = 16;  // up to "message"
 
-// ---- From values to text ----
+// --- From values to text --------------------------------------------------------------------------------------------
 
 std::string to_field(const std::string& text) { return text; }
 std::string to_field(MeshStatus status) { return name_of(status); }
@@ -66,7 +66,7 @@ std::string field_of(const ResultRow& row, Value MeshFigures::*member) {
   return row.figures ? to_field((*row.figures).*member) : "";
 }
 
-// ---- Back: false where the text is no such value ----
+// --- Back: false where the text is no such value --------------------------------------------------------------------
 
 bool from_field(const std::string& text, std::string& value) {
   value = text;

@@ -27,7 +27,7 @@
 namespace raycone {
 namespace {
 
-// ---- Specifications as CLI11 wants them --------------------------------------------------------------------------
+// --- Specifications as CLI11 wants them -----------------------------------------------------------------------------
 
 void add_operand(CLI::App& app, const OperandSpec& spec) {
   CLI::Option* const operand = app.add_option(spec.name)->description(spec.description)->option_text(" ");
@@ -128,7 +128,7 @@ Values parse_with_cli11(const CommandSpec& spec, const Arguments& arguments) {
   return Values(std::move(given));
 }
 
-// ---- What CLI11 would not notice, or say less well ---------------------------------------------------------------
+// --- What CLI11 would not notice, or say less well ------------------------------------------------------------------
 
 // Option names of all commands; each takes a value in every command that has it, or in none.
 OptionNames all_option_names() {

@@ -11,7 +11,7 @@
 
 namespace raycone {
 
-// ---- The filter ------------------------------------------------------------------------------------------------
+// --- The filter -----------------------------------------------------------------------------------------------------
 
 // With v = 2^-24 and all |Y|, |Z| at most 1: a coefficient, a coordinate and their product are rounded once each, then
 // the sum of the two products, its sum with `one` (rounded too) and the difference to X (rounded too, |X| <= 2). That
@@ -48,7 +48,7 @@ ProjectedGrid::Filter ProjectedGrid::filter_of(const Vec3& a, const Vec3& b, con
   return filter;
 }
 
-// ---- Rays ------------------------------------------------------------------------------------------------------
+// --- Rays -----------------------------------------------------------------------------------------------------------
 
 // What is done for each query is written in vectors, y in the lower lane and z in the upper one: compilers make
 // branches of minima and comparisons, which no processor can foresee.
@@ -277,7 +277,7 @@ void ProjectedGrid::crossings(std::span<const Vec3> queries, std::span<std::int6
   }
 }
 
-// ---- How far triangles reach -----------------------------------------------------------------------------------
+// --- How far triangles reach ----------------------------------------------------------------------------------------
 
 // From the cells of the first grid that the rays of a square of codes may be in.
 void ProjectedGrid::set_farthest() {
@@ -316,7 +316,7 @@ void ProjectedGrid::set_farthest() {
   });
 }
 
-// ---- The whole -------------------------------------------------------------------------------------------------
+// --- The whole ------------------------------------------------------------------------------------------------------
 
 namespace {
 

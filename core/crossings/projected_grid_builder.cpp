@@ -22,7 +22,7 @@ Interval spanned(double a, double b, double c) { return {least(a, b, c), largest
 
 }  // namespace
 
-// ---- Triangles -------------------------------------------------------------------------------------------------
+// --- Triangles ------------------------------------------------------------------------------------------------------
 
 // An edge's projection: the line y = at_y + slope (z - at_z), and the part of it between the ends.
 struct ProjectedGridBuilder::EdgeLine {
@@ -87,7 +87,7 @@ std::array<ProjectedGridBuilder::EdgeLine, 3> ProjectedGridBuilder::edges(std::u
   return edges;
 }
 
-// ---- The size of cells -----------------------------------------------------------------------------------------
+// --- The size of cells ----------------------------------------------------------------------------------------------
 
 ProjectedGridBuilder::Sizes& ProjectedGridBuilder::Sizes::operator+=(const Sizes& other) {
   triangles += other.triangles;
@@ -135,7 +135,7 @@ ProjectedGridBuilder::Grid ProjectedGridBuilder::choose(const Rectangle& box, co
   return grid;
 }
 
-// ---- The cells of a triangle -----------------------------------------------------------------------------------
+// --- The cells of a triangle ----------------------------------------------------------------------------------------
 
 // Which cells of a grid are met.
 class ProjectedGridBuilder::CellFinder {
@@ -240,7 +240,7 @@ ProjectedGridBuilder::Lists ProjectedGridBuilder::lists_of(const Grid& grid, con
   return lists;
 }
 
-// ---- The grids -------------------------------------------------------------------------------------------------
+// --- The grids ------------------------------------------------------------------------------------------------------
 
 namespace {
 

@@ -16,7 +16,7 @@
 namespace raycone {
 namespace {
 
-// ---- What the boundary adds ------------------------------------------------------------------------------------
+// --- What the boundary adds -----------------------------------------------------------------------------------------
 
 // Of a sample whose crossings are its value so far, where they are counted.
 std::int64_t crossings_at(const ScaledMesh& mesh, std::span<const double> values, std::size_t index) {
@@ -98,7 +98,7 @@ void add_far_field(const ScaledMesh& mesh, const LatticeRows& rows, const ValueO
   });
 }
 
-// ---- The whole -------------------------------------------------------------------------------------------------
+// --- The whole ------------------------------------------------------------------------------------------------------
 
 // Sets the values of rows whose crossings are known, by the direct sum. Returns how many samples lie on the surface.
 std::uint64_t finish_rows(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sums, const ValueOutputs& out) {

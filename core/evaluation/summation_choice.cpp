@@ -19,7 +19,7 @@ double SummationChoice::most_sources() const {
   return direct_.counts_crossings ? direct_.boundary.total_multiplicity() : static_cast<double>(direct_.triangles);
 }
 
-// ---- Far field -------------------------------------------------------------------------------------------------
+// --- Far field ------------------------------------------------------------------------------------------------------
 
 bool SummationChoice::may_have_far_field() const {
   constexpr std::uint64_t kTooFew = 100;  // exterior edges: no far field is cheaper
@@ -54,7 +54,7 @@ double SummationChoice::doubt_of_far_field() const {
   return FarField::doubt(tolerance_of_far_field(), most_sources());
 }
 
-// ---- Blocks ----------------------------------------------------------------------------------------------------
+// --- Blocks ---------------------------------------------------------------------------------------------------------
 
 bool SummationChoice::has_blocks() const {
   return is_open() && direct_.is_in_scale && accuracy_.tolerance >= kLeastToleranceOfBlocks &&

@@ -65,7 +65,7 @@ Box box_around(const Cube& cube) {
 
 }  // namespace
 
-// ---- Dividing --------------------------------------------------------------------------------------------------
+// --- Dividing -------------------------------------------------------------------------------------------------------
 
 LatticeBlocksWalk::LatticeBlocksWalk(const LatticeBlocks& blocks, const LatticeAxes& axes, AxesOf axes_of)
     : blocks_(blocks),
@@ -255,7 +255,7 @@ Cover LatticeBlocksWalk::cover_at(const SampleBlock& block, const SampleBox& sub
   return cover_in(blocks_.tree_, block.near, box_of(sub_block), kSampleShare * blocks_.tolerance_, near_triangle_);
 }
 
-// ---- Choosing --------------------------------------------------------------------------------------------------
+// --- Choosing -------------------------------------------------------------------------------------------------------
 
 double LatticeBlocksWalk::near_cost(const SampleBlock& block) const {
   return (block.near_cost + (axes_of_ == AxesOf::kCells ? kPolynomialAtPoint : kPolynomial)) * block.size();
@@ -300,7 +300,7 @@ double LatticeBlocksWalk::estimate(const SampleBlock& block) const {
   return making + inside * (block.size() / samples);
 }
 
-// ---- Fields ----------------------------------------------------------------------------------------------------
+// --- Fields ---------------------------------------------------------------------------------------------------------
 
 void LatticeBlocksWalk::make_fields(Division& division) const {
   std::vector<double> values(HarmonicFit::kNodes * HarmonicFit::kTogether);

@@ -25,7 +25,7 @@
 namespace raycone {
 namespace {
 
-// --- Calls that differ from their POSIX namesakes
+// --- Calls that differ from their POSIX namesakes -------------------------------------------------------------------
 
 // What was reserved beyond the end. Where that cannot be done, no data are lost.
 void give_back_room(int descriptor) {

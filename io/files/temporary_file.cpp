@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::string_view kPrefix = ".raycone-";
 
-// --- This process and others
+// --- This process and others ----------------------------------------------------------------------------------------
 
 std::string first_line(const char* path) {
   std::ifstream file(path);
@@ -77,7 +77,7 @@ TemporaryName next_name(const std::string& suffix) {
   return {host, getpid(), start, count++, suffix};
 }
 
-// --- Names
+// --- Names ----------------------------------------------------------------------------------------------------------
 
 bool is_lower_hexadecimal(std::string_view text) {
   return text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
@@ -101,9 +101,10 @@ bool take_number(std::string_view& text, Number& number) {
 
 }  // namespace
 
-// --- Temporary files that a signal handler must remove. A fixed table in static storage, because a handler may neither
-// allocate nor lock. Where all entries are taken a file is removed by its destructor only.
+// --- Files that a signal handler must remove ------------------------------------------------------------------------
 
+// A fixed table in static storage, because a handler may neither allocate nor lock. Where all entries are taken a file
+// is removed by its destructor only.
 struct TemporaryFile::Entry {
   enum State { kFree, kFilling, kInUse };
   std::atomic<int> state{kFree};

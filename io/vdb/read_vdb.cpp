@@ -213,7 +213,7 @@ PlacedLattice read(const std::string& path, const std::string& wanted) {
   return lattice_of(path, grids, n, *grids.head(n));
 }
 
-// --- How a grid was made
+// --- How a grid was made --------------------------------------------------------------------------------------------
 
 std::string rows_of(const openvdb::Mat4d& matrix) {
   std::string text = "[";

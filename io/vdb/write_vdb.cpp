@@ -31,7 +31,7 @@ namespace {
 using vdb::kLeafLog2, vdb::kLeafSize, vdb::LeafLayer, vdb::to_coord;
 static_assert(kVdbSlabAlignment == kLeafSize);
 
-// --- A grid without its tree
+// --- A grid without its tree ----------------------------------------------------------------------------------------
 
 openvdb::Vec3d to_vec(const Vec3& v) { return {v.x, v.y, v.z}; }
 openvdb::Vec4d to_row(const Vec3& v, double last) { return {v.x, v.y, v.z, last}; }
@@ -112,7 +112,7 @@ void describe(openvdb::GridBase& grid, const PlacedLattice& placed, const FieldD
   if (description.is(Precision::kHalf) && vdb::has_chosen_precision(field.kind)) grid.setSaveFloatAsHalf(true);
 }
 
-// --- Grids in the making
+// --- Grids in the making --------------------------------------------------------------------------------------------
 
 class GridBuilder {
  public:
@@ -255,7 +255,7 @@ std::unique_ptr<GridBuilder> make_builder(const GridPlan& plan) {
   return make_builder<FloatGrid>(plan, narrow_store(plan), narrow_background);
 }
 
-// --- The file
+// --- The file -------------------------------------------------------------------------------------------------------
 
 // OpenVDB offers files with the offsets that its file reader needs by name only, not on a stream.
 class SeekableArchive : public openvdb::io::Archive {

@@ -80,7 +80,6 @@ class PolygonCut {
       return a.left < b.left ? polygon->side(a, b.left) > 0 : polygon->side(b, a.left) < 0;
     }
     bool operator()(const SweepEdge& a, PointIndex p) const { return polygon->side(a, p) > 0; }
-    bool operator()(PointIndex p, const SweepEdge& a) const { return polygon->side(a, p) < 0; }
   };
   using Edges = std::set<SweepEdge, Below>;
   using At = Edges::iterator;

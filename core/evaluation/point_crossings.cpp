@@ -100,12 +100,10 @@ std::optional<PointCrossings> crossings_by_pass(const ScaledMesh& mesh, std::vec
   std::erase_if(rays, [&](const NumberedRay& ray) { return !ray.meets(mesh.box()); });
   if (rays.empty()) return PointCrossings(count);
   mesh.count_rays(rays.size());
-  {
-    const BinnedRays binned(std::move(rays));
-    if (auto crossings = try_to_pass(mesh, binned, count)) return crossings;
-    if (!mesh.build_grid()) return try_to_pass(mesh, binned, count);
-  }
-  return std::nullopt;
+  const BinnedRays binned(std::move(rays));
+  std::optional<PointCrossings> crossings = try_to_pass(mesh, binned, count);
+  if (!crossings && !mesh.build_grid()) crossings = try_to_pass(mesh, binned, count);
+  return crossings;
 }
 
 }  // namespace raycone

@@ -18,7 +18,7 @@
 namespace raycone {
 namespace {
 
-// ---- Closed meshes that have a grid ----------------------------------------------------------------------------
+// --- Closed meshes that have a grid ---------------------------------------------------------------------------------
 
 void set_to_zero(std::size_t begin, std::size_t end, std::span<double> values, const Diagnostics* diagnostics) {
   const std::size_t count = end - begin;
@@ -121,7 +121,7 @@ Tally evaluate_closed(const ScaledMeshes& meshes, std::span<const Vec3> points, 
   return of_all;
 }
 
-// ---- All meshes ------------------------------------------------------------------------------------------------
+// --- All meshes -----------------------------------------------------------------------------------------------------
 
 // What the rays of a batch cross, where a pass over the triangles has told: of the points that the scaled mesh takes,
 // and of the others. By the points' numbers.

@@ -194,8 +194,8 @@ bool ScaledMesh::grid_pays(double points) const {
 }
 
 std::size_t ScaledMesh::points_to_try(std::size_t points) const {
-  constexpr std::size_t kFew = 4096;
-  constexpr double kManyDecisions = 64.0;
+  constexpr std::size_t kFew = 1024;
+  constexpr double kManyDecisions = 160.0;
   const auto triangles = static_cast<double>(mesh_.triangles.size());
   const double all = std::max(static_cast<double>(points), expected_points_.load(std::memory_order_relaxed));
   const bool is_sure = kManyDecisions * PassEffort::kDecision * all < static_cast<double>(kGridEffort) * triangles;

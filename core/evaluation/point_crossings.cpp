@@ -22,12 +22,10 @@ void decide(const ScaledMesh& mesh, std::uint32_t triangle, const NumberedRay& r
   }
 }
 
-using Effort = ScaledMesh::PassEffort;
-
 // Of the triangles [begin, end), up to the first one at which more effort than `most` has been taken; how much has.
-Effort pass_over(const ScaledMesh& mesh, std::size_t begin, std::size_t end, const BinnedRays& rays, std::uint64_t most,
-                 PointCrossings& crossings) {
-  Effort effort;
+PassEffort pass_over(const ScaledMesh& mesh, std::size_t begin, std::size_t end, const BinnedRays& rays,
+                     std::uint64_t most, PointCrossings& crossings) {
+  PassEffort effort;
   const TriangleMesh& all = mesh.mesh();
   for (std::size_t t = begin; t < end && effort.sum() <= most; ++t) {
     const Triangle& corners = all.triangles[t];
@@ -78,13 +76,13 @@ std::optional<PointCrossings> try_to_pass(const ScaledMesh& mesh, const BinnedRa
   constexpr std::size_t kTrianglesPerTask = 1024;
   const std::size_t triangles = mesh.mesh().triangles.size();
   PointCrossings crossings(count);
-  Patience patience(mesh.effort_left(), triangles);
+  Patience patience(mesh.grid_choice().effort_left(), triangles);
   parallel_for(triangles, kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
     const std::uint64_t allowed = patience.for_more(end - begin);
     if (allowed == 0) return;
-    const Effort effort = pass_over(mesh, begin, end, rays, allowed, crossings);
+    const PassEffort effort = pass_over(mesh, begin, end, rays, allowed, crossings);
     patience.count(effort.sum(), allowed);
-    mesh.count_effort(effort);
+    mesh.grid_choice().count_effort(effort);
   });
   return patience.is_lost() ? std::nullopt : std::optional(std::move(crossings));
 }
@@ -99,7 +97,7 @@ std::optional<PointCrossings> crossings_by_pass(const ScaledMesh& mesh, std::vec
                                                 std::size_t count) {
   std::erase_if(rays, [&](const NumberedRay& ray) { return !ray.meets(mesh.box()); });
   if (rays.empty()) return PointCrossings(count);
-  mesh.count_rays(rays.size());
+  mesh.grid_choice().count_rays(rays.size());
   const BinnedRays binned(std::move(rays));
   std::optional<PointCrossings> crossings = try_to_pass(mesh, binned, count);
   if (!crossings && !mesh.build_grid()) crossings = try_to_pass(mesh, binned, count);

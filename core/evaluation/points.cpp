@@ -245,7 +245,7 @@ Tally evaluate_points(const ScaledMeshes& meshes, std::span<const Vec3> points, 
     scaled.prepare_points(static_cast<double>(left));
     const bool closed = scaled.is_closed() && scaled.grid_if_built() != nullptr;
     count = std::min(closed ? kIndexable : CoherentOrder::batch(scaled), left);
-    if (takes_passes(scaled)) count = scaled.points_to_try(count);
+    if (takes_passes(scaled)) count = scaled.grid_choice().points_to_try(count);
     const Diagnostics diagnostics = out.diagnostics ? out.diagnostics->part(begin, count) : Diagnostics{};
     const ValueOutputs of_batch{out.values.subspan(begin, count), out.done, out.diagnostics ? &diagnostics : nullptr};
     total += (closed ? evaluate_closed : evaluate_batch)(meshes, points.subspan(begin, count), of_batch, settling);

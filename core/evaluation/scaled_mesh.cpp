@@ -1,8 +1,6 @@
 #include "core/evaluation/scaled_mesh.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <new>
 #include <utility>
 
@@ -41,8 +39,10 @@ ScaledMesh::ScaledMesh(TriangleMesh mesh, const PowerOfTwo& scale, const Evaluat
       is_in_scale_(scale.exponent() != 0 || largest_exponent(mesh_) <= 0),
       boundary_(options.edges ? Boundary(mesh_, *options.edges) : Boundary(mesh_)),
       direct_(direct_engine(mesh_, boundary_, is_in_scale_, options)),
-      choice_(options, {boundary_, mesh_.triangles.size(), counts_crossings(), is_in_scale_}) {
+      choice_(options, {boundary_, mesh_.triangles.size(), counts_crossings(), is_in_scale_}),
+      grid_choice_(mesh_.triangles.size()) {
   options_.edges = nullptr;
+  if (options.ray_engine == RayEngine::kPasses) grid_choice_.rule_out();
 }
 
 TriangleMesh ScaledMesh::unscaled_mesh() const { return in_scale(mesh_, inverse_); }
@@ -146,68 +146,12 @@ const FarField* ScaledMesh::far_field_for(std::size_t samples) const {
   return far_field_without_waiting();
 }
 
-namespace {
-
-constexpr std::uint64_t kGridEffort = 120;  // of building a grid, for each triangle: 0.4 to 0.8 us
-constexpr std::uint64_t kPatience = 144;    // a little more, lest passes that were estimated to be cheaper be in vain
-constexpr double kUsualDecisions = 4.0;     // for each ray
-
-// Of many points, each triangle looks at a row or two of bins, which are in no cache, and some look at each ray.
-double effort_of_passes(double points, double triangles, double decisions) {
-  constexpr double kPointsOfPass = 65'536.0, kTriangle = 12.0, kLooks = 25.0;
-  const double each = kLooks + ScaledMesh::PassEffort::kDecision * decisions;
-  return kTriangle * std::ceil(points / kPointsOfPass) * triangles + each * points;
-}
-
-}  // namespace
-
-bool grid_pays_for_points(double points, double triangles) {
-  return effort_of_passes(points, triangles, kUsualDecisions) > kGridEffort * triangles;
-}
-
-double ScaledMesh::effort_of_passes(double points) const {
-  const auto rays = static_cast<double>(passed_rays_.load(std::memory_order_relaxed));
-  const auto decisions = static_cast<double>(decisions_.load(std::memory_order_relaxed));
-  return raycone::effort_of_passes(points, static_cast<double>(mesh_.triangles.size()),
-                                   rays > 0.0 ? decisions / rays : kUsualDecisions);
-}
-
-void ScaledMesh::count_effort(const PassEffort& effort) const {
-  decisions_.fetch_add(effort.decisions, std::memory_order_relaxed);
-  effort_.fetch_add(effort.sum(), std::memory_order_relaxed);
-}
-
-std::uint64_t ScaledMesh::effort_left() const {
-  if (options_.ray_engine == RayEngine::kPasses || lacks_memory_) return std::numeric_limits<std::uint64_t>::max();
-  const std::uint64_t most = kPatience * mesh_.triangles.size(), spent = effort_.load(std::memory_order_relaxed);
-  return spent < most ? most - spent : 0;
-}
-
-// Nobody knows how many points will come: the grid is built once passes take about as long as building it, so that some
-// points do not wait for it, and many wait about twice as long at most.
-bool ScaledMesh::grid_pays(double points) const {
-  if (options_.ray_engine != RayEngine::kScan || lacks_memory_) return false;
-  const auto passed = static_cast<double>(passed_rays_.load(std::memory_order_relaxed));
-  const double all = std::max(points, expected_points_.load(std::memory_order_relaxed) - passed);
-  return effort_of_passes(all) > static_cast<double>(kGridEffort * mesh_.triangles.size()) ||
-         effort_of_passes(points) > static_cast<double>(effort_left());
-}
-
-std::size_t ScaledMesh::points_to_try(std::size_t points) const {
-  constexpr std::size_t kFew = 1024;
-  constexpr double kManyDecisions = 160.0;
-  const auto triangles = static_cast<double>(mesh_.triangles.size());
-  const double all = std::max(static_cast<double>(points), expected_points_.load(std::memory_order_relaxed));
-  const bool is_sure = kManyDecisions * PassEffort::kDecision * all < static_cast<double>(kGridEffort) * triangles;
-  return is_sure || passed_rays_.load(std::memory_order_relaxed) > 0 ? points : std::min(points, kFew);
-}
-
 bool ScaledMesh::build_grid() const {
   try {
     (void)grid();
     return true;
   } catch (const std::bad_alloc&) {
-    lacks_memory_ = true;
+    grid_choice_.rule_out();
     return false;
   }
 }
@@ -217,7 +161,7 @@ void ScaledMesh::prepare_points(double points) const {
   (void)blocks_of_points();
   if (options_.ray_engine == RayEngine::kEmbree) {
     (void)rays();
-  } else if (!grid_.if_built() && grid_pays(points)) {
+  } else if (!grid_.if_built() && grid_choice_.pays_for(points)) {
     (void)build_grid();
   }
 }

@@ -19,6 +19,7 @@
 #include "core/crossings/slab_order.h"
 #include "core/data/box.h"
 #include "core/data/triangle_mesh.h"
+#include "core/evaluation/grid_choice.h"
 #include "core/evaluation/summation_choice.h"
 #include "core/evaluation/winding_number.h"
 #include "core/exact/scale.h"
@@ -88,27 +89,9 @@ class ScaledMesh {
   [[nodiscard]] const BlocksOfPoints* blocks_of_points() const;
   // Builds what points need, the grid of rays only if it pays for so many more of them. Only before loops over points.
   void prepare_points(double points) const;
-  // So many are going to come, in however many portions.
-  void expect_points(double points) const { expected_points_.store(points, std::memory_order_relaxed); }
-  // How many of so many points are to be evaluated first, as what they take tells whether the grid pays for the others.
-  [[nodiscard]] std::size_t points_to_try(std::size_t points) const;
   // Builds the grid of rays. False where memory does not suffice: then passes over the triangles must do.
   [[nodiscard]] bool build_grid() const;
-
-  // What passes over the triangles in place of the grid take (point_crossings.h).
-  struct PassEffort {
-    std::uint64_t triangles = 0;
-    std::uint64_t looks = 0;      // of triangles, at rays and at rows of bins
-    std::uint64_t decisions = 0;  // of predicates
-
-    static constexpr std::uint64_t kTriangle = 3, kDecision = 10;
-    // In units of 5 to 10 ns.
-    [[nodiscard]] std::uint64_t sum() const { return kTriangle * triangles + looks + kDecision * decisions; }
-  };
-  void count_rays(std::size_t rays) const { passed_rays_.fetch_add(rays, std::memory_order_relaxed); }
-  void count_effort(const PassEffort& effort) const;
-  // How much more effort passes may take until they have taken as long as building the grid.
-  [[nodiscard]] std::uint64_t effort_left() const;
+  [[nodiscard]] GridChoice& grid_choice() const { return grid_choice_; }
 
   // What follows takes queries in the scale.
 
@@ -169,10 +152,6 @@ class ScaledMesh {
   // None where another thread is making it.
   [[nodiscard]] const FarField* far_field_without_waiting() const;
   [[nodiscard]] std::unique_ptr<const BlocksOfPoints> make_blocks_of_points() const;
-  // What passes take for so many points.
-  [[nodiscard]] double effort_of_passes(double points) const;
-  // Whether the grid of rays pays, for so many more points.
-  [[nodiscard]] bool grid_pays(double points) const;
   void set_again_near_half_integers(const SampleTile& samples, std::span<const std::int64_t> crossings,
                                     std::span<double> values, double doubt) const;
 
@@ -188,9 +167,7 @@ class ScaledMesh {
   std::unique_ptr<const WindingNumberEngine> direct_;  // none where the mesh is closed
   SummationChoice choice_;                             // refers to boundary_
   mutable std::atomic<std::uint64_t> direct_terms_ = 0, samples_ = 0;
-  mutable std::atomic<std::uint64_t> passed_rays_ = 0, decisions_ = 0, effort_ = 0;  // of passes
-  mutable std::atomic<double> expected_points_ = 0.0;
-  mutable std::atomic<bool> lacks_memory_ = false;  // for the grid
+  mutable GridChoice grid_choice_;
   mutable std::atomic_flag far_is_taken_;
   BuiltOnce<Box> box_;
   BuiltOnce<RayCaster> rays_;

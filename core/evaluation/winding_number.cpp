@@ -100,7 +100,7 @@ void WindingNumberEvaluator::prepare_points(double points) const {
   const DefaultFloatingPoint guard;
   const ScaledMesh& scaled = implementation_->scaled();
   if (scaled.mesh().triangles.empty()) return;
-  scaled.expect_points(points);
+  scaled.grid_choice().expect_points(points);
   scaled.prepare_points(points);
 }
 

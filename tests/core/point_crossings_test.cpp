@@ -158,10 +158,10 @@ TEST(PointCrossings, OfAFewTellWhetherAGridPays) {
     const ScaledMeshes meshes(mesh, {});
     const ScaledMesh& scaled = meshes.scaled();
     EXPECT_FALSE(grid_pays_for_points(static_cast<double>(points.size()), double(mesh.triangles.size())));
-    EXPECT_LT(scaled.points_to_try(points.size()), points.size());
+    EXPECT_LT(scaled.grid_choice().points_to_try(points.size()), points.size());
     std::vector<double> values(points.size());
     evaluate_points(meshes, points, {values});
-    EXPECT_EQ(scaled.points_to_try(points.size()), points.size());  // once is enough
+    EXPECT_EQ(scaled.grid_choice().points_to_try(points.size()), points.size());  // once is enough
     return scaled.grid_if_built() != nullptr;
   };
   EXPECT_TRUE(takes_grid(nested));

@@ -18,14 +18,6 @@
 namespace raycone {
 namespace {
 
-// --- Closed meshes that have a grid ---------------------------------------------------------------------------------
-
-void set_to_zero(std::size_t begin, std::size_t end, std::span<double> values, const Diagnostics* diagnostics) {
-  const std::size_t count = end - begin;
-  std::ranges::fill(values.subspan(begin, count), 0.0);
-  if (diagnostics) diagnostics->part(begin, count).set_to_zero();
-}
-
 // The crossings, by a pass over the triangles, of those of the points point_at(n), n < count, that are to be had. None
 // where the mesh has another way to find them.
 template <class PointAt, class IsToBeHad>
@@ -39,6 +31,14 @@ std::optional<PointCrossings> crossings_without_grid(const ScaledMesh& mesh, std
     if (is_to_be_had(q)) rays.push_back({mesh.to_scale(q), n});
   }
   return crossings_by_pass(mesh, std::move(rays), count);
+}
+
+// --- Closed meshes that have a grid ---------------------------------------------------------------------------------
+
+void set_to_zero(std::size_t begin, std::size_t end, std::span<double> values, const Diagnostics* diagnostics) {
+  const std::size_t count = end - begin;
+  std::ranges::fill(values.subspan(begin, count), 0.0);
+  if (diagnostics) diagnostics->part(begin, count).set_to_zero();
 }
 
 // Those from order[begin] to before order[end]; places in the order are the numbers of their rays.

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
 
 #include "core/boundary/edge_factor.h"
 #include "core/boundary/near_edge.h"
@@ -119,57 +122,116 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, 
   }
 }
 
-// Multiplies the factors of a block onto the products of the samples from i on, and views its vertices from the
-// samples at `next`: their square roots fill the time that products wait for one another.
 template <class Rays>
-HWY_INLINE void multiply_block(ProductTile& products, const Chunk& chunk, const Rays& rays, const SampleTile& samples,
-                               std::size_t i, const ChunkView<Rays>& view, std::size_t next, ChunkView<Rays>& next_view,
-                               const EdgeRange& block) {
-  ProductLanes z = load(products, i);
+struct ProjectedChunk {
+  Chunk chunk;
+  Rays rays;
+
+  ProjectedChunk(const Vec3& from, std::span<const ChainStep> steps, const SampleTile& samples)
+      : chunk(from, steps), rays(chunk, samples) {}
+};
+
+// A chunk and the samples from i on, whose products it is multiplied onto.
+template <class Rays>
+struct Stage {
+  const ProjectedChunk<Rays>& of;
+  std::size_t i;
+  ChunkView<Rays>& view;
+
+  HWY_INLINE void view_vertex(const SampleTile& samples, std::size_t n) const {
+    view.set_vertex(of.chunk, of.rays, samples, n, i);
+  }
+};
+
+// The stages of a chain: each chunk with all samples, one chunk after the other. Those of a stage that is at hand have
+// been viewed.
+template <class Rays>
+class Stages {
+ public:
+  Stages(std::span<const ChainStep> steps, const SampleTile& samples) : steps_(steps), samples_(samples) {
+    set_next(0, 0);
+    if (next_) {
+      for (std::size_t n = 0; n <= next_->of.chunk.edges; ++n) next_->view_vertex(samples, n);
+    }
+    go_on();
+  }
+
+  // The one at hand, and the one after it; none behind the last one.
+  [[nodiscard]] const std::optional<Stage<Rays>>& here() const { return here_; }
+  [[nodiscard]] const std::optional<Stage<Rays>>& next() const { return next_; }
+
+  void go_on() {
+    here_.reset();
+    if (next_) here_.emplace(*next_);
+    if (here_) set_next(begin_, here_->i + hn::Lanes(d));
+  }
+
+ private:
+  // To the samples from i on of the chunk that starts with a step, else to the first ones of the next chunk.
+  void set_next(std::size_t begin, std::size_t i) {
+    if (i >= samples_.count) {
+      begin += kEdgesPerChunk;
+      i = 0;
+    }
+    next_.reset();
+    if (begin >= steps_.size() || samples_.count == 0) return;
+    std::optional<ProjectedChunk<Rays>>& chunk = chunks_[begin / kEdgesPerChunk % 2];
+    if (i == 0) {
+      chunk.emplace(steps_[begin > 0 ? begin - 1 : 0].to,
+                    steps_.subspan(begin, std::min(kEdgesPerChunk, steps_.size() - begin)), samples_);
+    }
+    view_ = 1 - view_;
+    begin_ = begin;
+    next_.emplace(Stage<Rays>{*chunk, i, views_[view_]});
+  }
+
+  std::span<const ChainStep> steps_;
+  const SampleTile& samples_;
+  std::array<std::optional<ProjectedChunk<Rays>>, 2> chunks_;  // in turns, as views
+  std::array<ChunkView<Rays>, 2> views_;
+  std::size_t begin_ = 0, view_ = 0;  // of the next stage
+  std::optional<Stage<Rays>> here_, next_;
+};
+
+// Multiplies the factors of a block onto the products of a stage, and views its vertices in the next one, if there are
+// any: their square roots fill the time that products wait for one another.
+template <class Rays>
+HWY_INLINE void multiply_block(ProductTile& products, const SampleTile& samples, const Stage<Rays>& stage,
+                               const Stage<Rays>* next, const EdgeRange& block) {
+  const auto& [chunk, rays] = stage.of;
+  const std::size_t viewed = next ? next->of.chunk.edges : 0;
+  ProductLanes z = load(products, stage.i);
   LaneMask trusted = hn::FirstN(d, hn::Lanes(d));
   for (std::size_t n = block.begin; n < block.end; ++n) {
-    next_view.set_vertex(chunk, rays, samples, n + 1, next);
-    if (rays.is_without_factor(n, i)) continue;
-    const EdgeFactors factors = factors_of(rays, view, n);
+    if (n < viewed) next->view_vertex(samples, n + 1);
+    if (rays.is_without_factor(n, stage.i)) continue;
+    const EdgeFactors factors = factors_of(rays, stage.view, n);
     trusted = hn::And(trusted, is_not_near(factors));
     z = times(z, factors.re, factors.im, factors.direction);
   }
   trusted = hn::And(trusted, is_sound(z));
   if (HWY_LIKELY(hn::AllTrue(d, trusted))) {
-    store(scaled(z), products, i);
+    store(scaled(z), products, stage.i);
   } else {
-    const Trial trial = product_without_level_edges(products, rays, i, view, block);
+    const Trial trial = product_without_level_edges(products, rays, stage.i, stage.view, block);
     if (!hn::AllTrue(d, trial.trusted)) {
-      multiply_carefully(products, chunk, rays, samples, i, view, block, bits_of(trial.trusted));
+      multiply_carefully(products, chunk, rays, samples, stage.i, stage.view, block, bits_of(trial.trusted));
     }
-    store_trusted(trial.z, trial.trusted, products, i);
-  }
-}
-
-template <class Rays>
-void multiply_chunk(ProductTile& products, const Chunk& chunk, const SampleTile& samples) {
-  const Rays rays(chunk, samples);
-  std::array<ChunkView<Rays>, 2> views;  // of the samples at hand and of the next ones, in turns
-  for (std::size_t n = 0; n <= chunk.edges; ++n) views[0].set_vertex(chunk, rays, samples, n, 0);
-  std::size_t here = 0;
-  for (std::size_t i = 0; i < samples.count; i += hn::Lanes(d)) {
-    const std::size_t next = i + hn::Lanes(d) < samples.count ? i + hn::Lanes(d) : i;
-    views[1 - here].set_vertex(chunk, rays, samples, 0, next);
-    for (std::size_t begin = 0; begin < chunk.edges; begin += kFactorsPerBlock) {
-      multiply_block(products, chunk, rays, samples, i, views[here], next, views[1 - here],
-                     {begin, std::min(begin + kFactorsPerBlock, chunk.edges)});
-    }
-    here = 1 - here;
+    store_trusted(trial.z, trial.trusted, products, stage.i);
   }
 }
 
 template <class Rays>
 void multiply_all(std::span<const ChainStep> steps, const SampleTile& samples, ProductTile& products) {
   set_ones(products);
-  for (std::size_t begin = 0; begin < steps.size(); begin += kEdgesPerChunk) {
-    const Vec3& from = steps[begin > 0 ? begin - 1 : 0].to;
-    const Chunk chunk(from, steps.subspan(begin, std::min(kEdgesPerChunk, steps.size() - begin)));
-    multiply_chunk<Rays>(products, chunk, samples);
+  for (Stages<Rays> stages(steps, samples); stages.here(); stages.go_on()) {
+    const Stage<Rays>& stage = *stages.here();
+    const Stage<Rays>* const next = stages.next() ? &*stages.next() : nullptr;
+    if (next) next->view_vertex(samples, 0);
+    const std::size_t edges = stage.of.chunk.edges;
+    for (std::size_t begin = 0; begin < edges; begin += kFactorsPerBlock) {
+      multiply_block(products, samples, stage, next, {begin, std::min(begin + kFactorsPerBlock, edges)});
+    }
   }
   set_arguments(products, samples.count);
 }

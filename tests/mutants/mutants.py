@@ -182,7 +182,7 @@ MUTANTS = [
     Mutant("no_turns_of_careful_factors", "the running product's turns are counted", [
         ("core/boundary/product_lanes-inl.h", "z.passages[i] += std::signbit(im) ? -1.0 : 1.0;", "{}")]),
     Mutant("product_never_scaled", "the power of two is taken out of the product", [
-        ("core/boundary/cone_kernel.cpp", "store(scaled(z), products, i);", "store(z, products, i);")]),
+        ("core/boundary/cone_kernel.cpp", "store(scaled(z), products, stage.i);", "store(z, products, i);")]),
     Mutant("factors_of_any_size", "a factor too large or small for eight of them is scaled first", [
         ("core/boundary/product_lanes-inl.h", "kSmallestFactor = 0x1p-120;", "kSmallestFactor = 0.0;"),
         ("core/boundary/product_lanes-inl.h", "kLargestFactor = 0x1p120;", "kLargestFactor = 0x1p1023;")]),

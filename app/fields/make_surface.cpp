@@ -42,7 +42,7 @@ auto with_surface_errors(const std::string& name, const SurfaceOptions& options,
   try {
     return make();
   } catch (const LatticeTooFine& error) {
-    const char* const other_format = options.precision == VertexPrecision::kSingle ? ", or write PLY" : "";
+    const char* const other_format = options.precision == CoordinatePrecision::kSingle ? ", or write PLY" : "";
     throw LimitError(name + ": " + error.what() + "; see --resolution and --normalize" + other_format);
   } catch (const LatticeOutOfRange& error) {
     throw LimitError(name + ": " + error.what() + "; see --scale");

@@ -23,7 +23,7 @@
 #include "app/run/mesh_run.h"
 #include "app/samples/disk_space.h"
 #include "app/samples/sampled_points.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
@@ -63,9 +63,9 @@ bool next(PointReader& reader, const PointBatch& batch, std::vector<Vec3>& point
 }
 
 // Points that are drawn lie where fewer digits can say it, so that values belong to what is stored.
-VertexPrecision drawn_precision(const PointsCommand& command) {
+CoordinatePrecision drawn_precision(const PointsCommand& command) {
   const Precision values = command.encoding.precision.value_or(Precision::kDouble);
-  return command.sample && values != Precision::kDouble ? VertexPrecision::kSingle : VertexPrecision::kDouble;
+  return command.sample && values != Precision::kDouble ? CoordinatePrecision::kSingle : CoordinatePrecision::kDouble;
 }
 
 // Null where points are to be drawn, which takes the mesh.
@@ -118,7 +118,7 @@ struct PointWork {
 // full disk; where the output is a file, its own head is completed at the end.
 std::unique_ptr<PointWriter> open_writer(const PointsCommand& command, const PointReader& reader, MeshRun& run) {
   OutputDescription description = description_of(run.report, command.field, command.encoding);
-  description.single_points = drawn_precision(command) == VertexPrecision::kSingle;
+  description.single_points = drawn_precision(command) == CoordinatePrecision::kSingle;
   description.has_places = command.sample && draws_on_surface(*command.sample);
   const bool is_certain = reader.has_certain_size();
   if (is_certain) run.output.reserve(least_point_file(command.encoding.format, description, *reader.size()));

@@ -14,7 +14,7 @@ namespace {
 
 class SampledPoints final : public PointReader {
  public:
-  SampledPoints(std::string name, PointSampler sampler, const SampleRequest& request, VertexPrecision precision)
+  SampledPoints(std::string name, PointSampler sampler, const SampleRequest& request, CoordinatePrecision precision)
       : name_(std::move(name)),
         sampler_(std::move(sampler)),
         precision_(precision),
@@ -29,7 +29,7 @@ class SampledPoints final : public PointReader {
       sampler_.draw(drawn_, batch);
     }
     round_to(precision_, batch);
-    if (precision_ == VertexPrecision::kSingle && !std::ranges::all_of(batch, is_finite))
+    if (precision_ == CoordinatePrecision::kSingle && !std::ranges::all_of(batch, is_finite))
       throw LimitError(name_ + ": points are too large for 32 bits; see --dtype and --scale");
     drawn_ += batch.size();
     return !batch.empty();
@@ -45,7 +45,7 @@ class SampledPoints final : public PointReader {
  private:
   std::string name_;  // of the mesh's file
   PointSampler sampler_;
-  VertexPrecision precision_;
+  CoordinatePrecision precision_;
   bool on_surface_;
   std::vector<std::int64_t> faces_;
   std::vector<Vec3> normals_;
@@ -60,7 +60,7 @@ bool draws_on_surface(const SampleRequest& request) {
 }
 
 std::unique_ptr<PointReader> draw_points(const std::string& name, const TriangleMesh& mesh,
-                                         const SampleRequest& request, VertexPrecision precision) {
+                                         const SampleRequest& request, CoordinatePrecision precision) {
   const Box box = widened(request.bounds.value_or(bounding_box(mesh)), request.padding);
   PointSampler sampler(mesh, box, request.groups, request.seed);
   if (!sampler.has_needed_area()) throw InputError(name + ": no triangle has an area, expected a surface to draw from");

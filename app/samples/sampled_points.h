@@ -5,8 +5,8 @@
 #include <string>
 
 #include "app/options/points_command.h"
+#include "core/data/coordinate_precision.h"
 #include "core/data/triangle_mesh.h"
-#include "core/data/vertex_precision.h"
 #include "io/points/read_points.h"
 
 namespace raycone {
@@ -15,7 +15,7 @@ namespace raycone {
 // of the box, InputError where points near the surface are asked for and there is none, LimitError where points would
 // not be finite.
 [[nodiscard]] std::unique_ptr<PointReader> draw_points(const std::string& name, const TriangleMesh& mesh,
-                                                       const SampleRequest& request, VertexPrecision precision);
+                                                       const SampleRequest& request, CoordinatePrecision precision);
 
 // Whether some of the points lie on the surface, so that they have normals and faces.
 [[nodiscard]] bool draws_on_surface(const SampleRequest& request);

@@ -8,7 +8,7 @@
 #include "core/arrangement/arranged_patches.h"
 #include "core/arrangement/arrangement.h"
 #include "core/arrangement/winding_in_front.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 
 namespace raycone {
 namespace {
@@ -33,7 +33,7 @@ std::optional<std::vector<Place>> places_of(const ArrangedPatches& patches, Arra
 // Makes triangles of corners that are rounded, of which equal ones are one vertex.
 class RoundedMesh {
  public:
-  RoundedMesh(const Arrangement& arrangement, VertexPrecision precision)
+  RoundedMesh(const Arrangement& arrangement, CoordinatePrecision precision)
       : arrangement_(arrangement), precision_(precision), vertex_of_(arrangement.corners(), kNone) {}
 
   void add(const Triangle& corners, std::uint32_t source) {
@@ -62,7 +62,7 @@ class RoundedMesh {
   }
 
   const Arrangement& arrangement_;
-  VertexPrecision precision_;
+  CoordinatePrecision precision_;
   std::vector<std::uint32_t> vertex_of_;
   std::map<std::tuple<double, double, double>, std::uint32_t> at_place_;
   RuleBorder border_;

@@ -6,9 +6,9 @@
 #include <optional>
 #include <vector>
 
+#include "core/data/coordinate_precision.h"
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
-#include "core/data/vertex_precision.h"
 
 namespace raycone {
 
@@ -19,8 +19,8 @@ struct RuleBorder {
 
 struct RuleBorderOptions {
   Rule rule;
-  VertexPrecision precision = VertexPrecision::kDouble;  // of vertices
-  std::size_t most_pairs = 0;                            // of faces that meet beyond what they share
+  CoordinatePrecision precision = CoordinatePrecision::kDouble;  // of vertices
+  std::size_t most_pairs = 0;                                    // of faces that meet beyond what they share
 };
 
 // The parts of faces at which the rule holds on one side alone, facing the other one. All is exact, but that vertices

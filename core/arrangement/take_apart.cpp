@@ -12,8 +12,8 @@
 #include "core/arrangement/face_pairs.h"
 #include "core/arrangement/fan_cone.h"
 #include "core/arrangement/fan_parting.h"
+#include "core/data/coordinate_precision.h"
 #include "core/data/vec3.h"
-#include "core/data/vertex_precision.h"
 #include "core/mesh/disjoint_sets.h"
 #include "core/mesh/face_edges.h"
 

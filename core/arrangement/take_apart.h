@@ -5,14 +5,14 @@
 #include <optional>
 #include <vector>
 
+#include "core/data/coordinate_precision.h"
 #include "core/data/triangle_mesh.h"
-#include "core/data/vertex_precision.h"
 
 namespace raycone {
 
 struct ApartOptions {
-  double distance = 0.0;                                 // by which vertices move, world units
-  VertexPrecision precision = VertexPrecision::kDouble;  // of new vertices
+  double distance = 0.0;                                         // by which vertices move, world units
+  CoordinatePrecision precision = CoordinatePrecision::kDouble;  // of new vertices
   // Vertices move against the perturbation where they can: along one axis where that is enough, else by far less along
   // y than along x, and along z than along y; those of several fans farther and farther. What lies on faces there is
   // then on the side of all of them that it is on as perturbed.

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "core/contour/contour.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/machine/sum_over.h"
 
 namespace raycone {

@@ -7,8 +7,8 @@
 #include "core/cells/edge_points.h"
 #include "core/cells/surface_cells.h"
 #include "core/contour/face_points.h"
+#include "core/data/coordinate_precision.h"
 #include "core/data/vec3.h"
-#include "core/data/vertex_precision.h"
 
 namespace raycone {
 
@@ -16,7 +16,7 @@ namespace raycone {
 struct ContourPoints {
   std::span<const EdgePoint> edges;
   std::span<const Vec3> faces, apexes;
-  VertexPrecision precision = VertexPrecision::kDouble;  // of the vertices that they become
+  CoordinatePrecision precision = CoordinatePrecision::kDouble;  // of the vertices that they become
 };
 
 // How many of these, before any merging, are not strictly inside of their edge, face or tetrahedron: less than half the

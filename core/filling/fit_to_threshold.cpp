@@ -10,7 +10,7 @@
 
 #include "core/cells/line_roots.h"
 #include "core/certificate/certificate.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/distance/distance.h"
 #include "core/filling/fill_faces.h"
 #include "core/mesh/exterior_edges.h"

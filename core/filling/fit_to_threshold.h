@@ -6,13 +6,13 @@
 #include "core/cells/edge_roots.h"
 #include "core/cells/node_set.h"
 #include "core/cells/surface_mesh.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 
 namespace raycone {
 
 struct FitOptions {
-  std::size_t most_faces = 0;                            // without source
-  VertexPrecision precision = VertexPrecision::kDouble;  // of new vertices
+  std::size_t most_faces = 0;                                    // without source
+  CoordinatePrecision precision = CoordinatePrecision::kDouble;  // of new vertices
 };
 
 // Divides the faces of a closed surface that have no source, until they are along where the winding number passes a

@@ -9,7 +9,7 @@
 #include "core/cells/surface_mesh.h"
 #include "core/certificate/border_components.h"
 #include "core/certificate/certificate.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/filling/embedded_border.h"
 #include "core/mesh/used_part.h"
 

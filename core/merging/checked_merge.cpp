@@ -8,7 +8,7 @@
 
 #include "core/cells/surface_mesh.h"
 #include "core/certificate/certificate.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/merging/kept_vertices.h"
 #include "core/merging/left_behind.h"
 #include "core/merging/merge_planes.h"

@@ -7,8 +7,8 @@
 
 #include "core/cells/node_set.h"
 #include "core/cells/surface_mesh.h"
+#include "core/data/coordinate_precision.h"
 #include "core/data/triangle_mesh.h"
-#include "core/data/vertex_precision.h"
 
 namespace raycone {
 
@@ -49,8 +49,8 @@ struct CheckedMerge {
 struct MergeOptions {
   double margin = 0.0;     // how far points are kept off nodes, voxels
   double tolerance = 0.0;  // how far apart numbers of one plane may be, world units (plane_tolerance())
-  VertexPrecision precision = VertexPrecision::kDouble;  // of vertices, which stay so
-  bool once = false;                                     // not again within less, as who calls can make another surface
+  CoordinatePrecision precision = CoordinatePrecision::kDouble;  // of vertices, which stay so
+  bool once = false;  // not again within less, as who calls can make another surface
 };
 
 // A surface merged by PlaneMerger, without what makes faults (faults_of()): vertices around them stay where they are,

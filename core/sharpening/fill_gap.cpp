@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/cells/source_plane.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/sharpening/best_triangulation.h"
 
 namespace raycone {

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "core/data/coordinate_precision.h"
 #include "core/data/triangle_mesh.h"
-#include "core/data/vertex_precision.h"
 #include "core/distance/distance.h"
 
 namespace raycone {
@@ -34,8 +34,8 @@ struct GapLimits {
   double off = 0.0;    // how far points of one plane are from it at most, world units
   double reach = 0.0;  // how far new corners may be from corners of the loop, likewise
   std::size_t new_corners = 0;
-  VertexPrecision precision = VertexPrecision::kDouble;    // of new corners
-  std::function<bool(std::span<const Vec3>)> are_on_mesh;  // all of them
+  CoordinatePrecision precision = CoordinatePrecision::kDouble;  // of new corners
+  std::function<bool(std::span<const Vec3>)> are_on_mesh;        // all of them
 };
 
 // The planes behind a loop, continued until they meet: in straight lines between corners of the loop that are in both,

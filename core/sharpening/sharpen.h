@@ -8,8 +8,8 @@
 #include "core/cells/surface_mesh.h"
 #include "core/cells/triangle_normals.h"
 #include "core/certificate/surface_edit.h"
+#include "core/data/coordinate_precision.h"
 #include "core/data/triangle_mesh.h"
-#include "core/data/vertex_precision.h"
 #include "core/distance/distance.h"
 #include "core/sharpening/face_placement.h"
 
@@ -18,8 +18,8 @@ namespace raycone {
 struct SharpenLimits {
   double off = 0.0;    // a face is in the plane of its source if its corners are not farther from it, world units
   double reach = 0.0;  // how far a vertex is pulled at most, likewise
-  VertexPrecision precision = VertexPrecision::kDouble;  // of vertices
-  std::uint64_t fewer = 0;                               // faces in planes than there would be without polygons
+  CoordinatePrecision precision = CoordinatePrecision::kDouble;  // of vertices
+  std::uint64_t fewer = 0;                                       // faces in planes than there would be without polygons
 };
 
 // Where a sharp edge passes between outside nodes, contour() cuts it off: a strip of faces runs from a plane of the

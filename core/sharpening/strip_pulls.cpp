@@ -9,7 +9,7 @@
 
 #include "core/cells/cell_creases.h"
 #include "core/certificate/surface_edit.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/machine/threads.h"
 
 namespace raycone {

@@ -69,12 +69,13 @@ struct DroppedSamples::Part {
   std::vector<bool> dropped{};
 };
 
-double farthest_kept(const TriangleMesh& mesh, const Lattice& lattice, SurfaceFaces faces, VertexPrecision precision) {
+double farthest_kept(const TriangleMesh& mesh, const Lattice& lattice, SurfaceFaces faces,
+                     CoordinatePrecision precision) {
   const double off_contour = kOffContour * safe_norm(lattice.spacing);
   if (faces == SurfaceFaces::kOfContour) return off_contour;
   constexpr double kTolerances = 2.0;  // two planes may each be off by one
   constexpr double kSingle = 0x1p-22;  // of a coordinate: more than it is off in single precision
-  const double rounding = precision == VertexPrecision::kSingle ? kSingle * largest_coordinate(lattice) : 0.0;
+  const double rounding = precision == CoordinatePrecision::kSingle ? kSingle * largest_coordinate(lattice) : 0.0;
   const double off = std::max(kOnSurface * lattice.least_spacing(), kTolerances * plane_tolerance(mesh, lattice));
   return std::min(std::max(off, rounding), off_contour);
 }

@@ -10,9 +10,9 @@
 
 #include "core/cells/node_set.h"
 #include "core/cells/surface_mesh.h"
+#include "core/data/coordinate_precision.h"
 #include "core/data/triangle_mesh.h"
 #include "core/data/vec3.h"
-#include "core/data/vertex_precision.h"
 #include "core/distance/distance.h"
 
 namespace raycone {
@@ -34,7 +34,7 @@ enum class SurfaceFaces : std::uint8_t { kOfMesh, kOfContour };
 // has the mesh's own faces, more than these are moved where they are cut or merged; of a contour, what it cuts off
 // edges at most, as a rule. Without thickness, and not simplified. `precision`: of the surface's vertices.
 [[nodiscard]] double farthest_kept(const TriangleMesh& mesh, const Lattice& lattice, SurfaceFaces faces,
-                                   VertexPrecision precision);
+                                   CoordinatePrecision precision);
 
 // Finds the points that are dropped: farther from the surface than `farthest`. Where the set has no thickness, also
 // those that are not on the surface, of components of the mesh that no face of the surface is of.

@@ -18,7 +18,7 @@
 #include "core/contour/contour.h"
 #include "core/contour/face_points.h"
 #include "core/contour/vertex_places.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/distance/distance.h"
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
@@ -263,7 +263,7 @@ class SurfaceMaker {
 }  // namespace
 
 // Fewer roundings are enough where more would be too much; but they keep less apart what must not meet.
-double surface_margin(const Lattice& lattice, VertexPrecision precision) {
+double surface_margin(const Lattice& lattice, CoordinatePrecision precision) {
   constexpr double kLeast = 0x1p-30, kRoundings = 0x1p8, kFewest = 0x1p5;
   const double rounding = std::max(relative_rounding(precision) * largest_coordinate(lattice), 0x1p-1074);
   const double voxels = rounding / lattice.least_spacing();
@@ -276,7 +276,7 @@ FinishedSurface closed_surface(const TriangleMesh& mesh, const FineAndRough& eva
   constexpr double kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80, kLeastCoordinate = 0x1p-1000;
   const double largest = largest_coordinate(inside.lattice());
   const double margin = surface_margin(inside.lattice(), options.precision);
-  const bool is_single = options.precision == VertexPrecision::kSingle;
+  const bool is_single = options.precision == CoordinatePrecision::kSingle;
   const std::string precision = is_single ? "single precision" : "double precision";
   const bool fits_float = largest < kLargestFloat && inside.lattice().least_spacing() > kLeastVoxel;
   const bool is_tiny = largest < kLeastCoordinate && !(margin <= kMostOfFirst);

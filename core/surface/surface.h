@@ -10,10 +10,10 @@
 #include "core/cells/edge_roots.h"
 #include "core/cells/node_set.h"
 #include "core/cells/surface_mesh.h"
+#include "core/data/coordinate_precision.h"
 #include "core/data/lattice.h"
 #include "core/data/rule.h"
 #include "core/data/triangle_mesh.h"
-#include "core/data/vertex_precision.h"
 
 namespace raycone {
 
@@ -22,8 +22,8 @@ struct SurfaceOptions {
   double thickness = 0.0;    // the set has grown by this distance from the mesh, world units
   bool merge_planes = true;  // faces of one plane, which changes no point of the surface
   double simplify = 0.0;     // after that, how far the surface may move, world units
-  VertexPrecision precision = VertexPrecision::kDouble;  // of vertices
-  int rounds = 16;                                       // of simplifying, until the surface stays as it was
+  CoordinatePrecision precision = CoordinatePrecision::kDouble;  // of vertices
+  int rounds = 16;                                               // of simplifying, until the surface stays as it was
   // Told what begins, in a few words that stay valid, on the caller's thread.
   std::function<void(const char*)> at_stage{};
 };
@@ -80,7 +80,7 @@ class LatticeOutOfRange : public std::runtime_error {
                                              const NodeSet& inside, const SurfaceOptions& options);
 
 // The margin that a lattice is given at first, as a fraction of a voxel.
-[[nodiscard]] double surface_margin(const Lattice& lattice, VertexPrecision precision);
+[[nodiscard]] double surface_margin(const Lattice& lattice, CoordinatePrecision precision);
 
 // What closed_surface() and measure_surface() are likely to take at most, in bytes, of a mesh of so many triangles,
 // beside `inside` and the mesh: an estimate; peaks of whole processes were 0.8 to 2 times it. Takes no memory and

@@ -9,7 +9,7 @@
 
 #include "core/cells/source_plane.h"
 #include "core/certificate/certificate.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/distance/distance.h"
 #include "core/merging/mesh_corners.h"
 

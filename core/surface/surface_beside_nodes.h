@@ -12,9 +12,9 @@
 
 #include "core/cells/node_set.h"
 #include "core/cells/surface_mesh.h"
+#include "core/data/coordinate_precision.h"
 #include "core/data/lattice.h"
 #include "core/data/triangle_mesh.h"
-#include "core/data/vertex_precision.h"
 
 namespace raycone {
 
@@ -26,7 +26,7 @@ struct BesideNodesLimits {
   double to_corners = 0.0;  // how far points may be moved to corners, and into level planes, of the mesh
   double off = 0.0;         // how far points of the lattice's edges may be from the surface
   std::size_t faces = 0;    // with as many a surface is of no use
-  VertexPrecision precision = VertexPrecision::kDouble;
+  CoordinatePrecision precision = CoordinatePrecision::kDouble;
 };
 
 // The merged surface of a lattice, where there is one without faults.

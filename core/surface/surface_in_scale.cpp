@@ -44,7 +44,7 @@ struct SurfaceInput {
 
 bool is_out_of_scale(const Lattice& lattice, const SurfaceOptions& options) {
   constexpr int kFar = 64;  // powers of two from 1
-  return options.precision == VertexPrecision::kDouble && std::abs(exponent_of(lattice)) > kFar;
+  return options.precision == CoordinatePrecision::kDouble && std::abs(exponent_of(lattice)) > kFar;
 }
 
 bool is_far_too_large(const Lattice& lattice) {

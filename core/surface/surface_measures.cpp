@@ -107,7 +107,7 @@ class MissedSamples {
   using Visit = std::function<void(double area, std::uint32_t triangle)>;
   MissedSamples(const TriangleMesh& mesh, const RuleAlong& rule, const DroppedSamples& samples, Visit visit)
       : mesh_(mesh), rule_(rule), inside_(samples.inside()), thickness_(samples.thickness()), visit_(std::move(visit)) {
-    step_ = surface_margin(inside_.lattice(), VertexPrecision::kDouble) * inside_.lattice().least_spacing();
+    step_ = surface_margin(inside_.lattice(), CoordinatePrecision::kDouble) * inside_.lattice().least_spacing();
   }
 
   // Where many are asked about, those that follow on a triangle are asked about together, ever more of them.

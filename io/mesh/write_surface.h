@@ -6,8 +6,8 @@
 #include <span>
 #include <string_view>
 
+#include "core/data/coordinate_precision.h"
 #include "core/data/triangle_mesh.h"
-#include "core/data/vertex_precision.h"
 #include "io/files/output_file.h"
 
 namespace raycone {
@@ -22,8 +22,8 @@ enum class SurfaceFormat { kPly, kStl, kObj, kOff };
 }
 
 // STL holds single precision; the others hold doubles as they are.
-[[nodiscard]] inline VertexPrecision vertex_precision(SurfaceFormat format) {
-  return format == SurfaceFormat::kStl ? VertexPrecision::kSingle : VertexPrecision::kDouble;
+[[nodiscard]] inline CoordinatePrecision vertex_precision(SurfaceFormat format) {
+  return format == SurfaceFormat::kStl ? CoordinatePrecision::kSingle : CoordinatePrecision::kDouble;
 }
 
 // Writes the mesh and commits. PLY (binary, little-endian) has vertices in double precision and a property `source` of

@@ -45,9 +45,9 @@ TEST(EmbeddedBorder, GoesDifferentWaysAtDifferentPlaces) {
   constexpr double kSpacing = 0.21, kDistance = 0x1p-30 * kSpacing, kSmall = kDistance / 4;
   const TriangleMesh mesh = test::joined(wedges_beside_a_plate(kSmall), plates(kSmall));
   for (const bool against : {false, true}) {
-    EXPECT_EQ(is_apart(wedges_beside_a_plate(kSmall), {kDistance, VertexPrecision::kDouble, against}), !against);
-    EXPECT_EQ(is_apart(plates(kSmall), {kDistance, VertexPrecision::kDouble, against}), against);
-    EXPECT_FALSE(is_apart(mesh, {kDistance, VertexPrecision::kDouble, against}));
+    EXPECT_EQ(is_apart(wedges_beside_a_plate(kSmall), {kDistance, CoordinatePrecision::kDouble, against}), !against);
+    EXPECT_EQ(is_apart(plates(kSmall), {kDistance, CoordinatePrecision::kDouble, against}), against);
+    EXPECT_FALSE(is_apart(mesh, {kDistance, CoordinatePrecision::kDouble, against}));
   }
   const Lattice lattice{{-0.3, -0.3, -0.3}, {kSpacing, kSpacing, kSpacing}, {0, 0, 0}, {28, 14, 13}};
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);

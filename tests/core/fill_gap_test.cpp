@@ -38,7 +38,7 @@ class Gap {
   [[nodiscard]] std::optional<GapFill> filled(std::size_t new_corners, const std::optional<Vec3>& corner = {},
                                               bool anywhere = false) const {
     const DefaultFloatingPoint guard;
-    const GapLimits limits{1e-9, 1.0, new_corners, VertexPrecision::kDouble, [&](std::span<const Vec3> points) {
+    const GapLimits limits{1e-9, 1.0, new_corners, CoordinatePrecision::kDouble, [&](std::span<const Vec3> points) {
                              std::vector<double> distances(points.size());
                              distances_.evaluate(points, distances);
                              return anywhere || std::ranges::all_of(distances, [](double d) { return d <= 1e-9; });

@@ -9,7 +9,7 @@
 
 #include "core/cells/surface_mesh.h"
 #include "core/certificate/certificate.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/evaluation/winding_number.h"
 #include "core/exact/direct_sum.h"
 #include "core/filling/closed_by_caps.h"
@@ -106,11 +106,11 @@ TEST(FitToThreshold, LeavesWhatIsFlat) {
 
 TEST(FitToThreshold, RoundsNewVerticesToSinglePrecision) {
   TriangleMesh mesh = bent_bowl();
-  round_to(VertexPrecision::kSingle, mesh.vertices);
-  const Filled result = filled(mesh, 0.1, {.most_faces = 10000, .precision = VertexPrecision::kSingle});
+  round_to(CoordinatePrecision::kSingle, mesh.vertices);
+  const Filled result = filled(mesh, 0.1, {.most_faces = 10000, .precision = CoordinatePrecision::kSingle});
   EXPECT_TRUE(result.fits);
   std::vector<Vec3> rounded = result.surface.mesh.vertices;
-  round_to(VertexPrecision::kSingle, rounded);
+  round_to(CoordinatePrecision::kSingle, rounded);
   EXPECT_EQ(rounded, result.surface.mesh.vertices);
 }
 

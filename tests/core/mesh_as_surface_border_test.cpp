@@ -12,8 +12,8 @@
 #include "core/cells/node_set.h"
 #include "core/cells/source_plane.h"
 #include "core/certificate/certificate.h"
+#include "core/data/coordinate_precision.h"
 #include "core/data/rule.h"
-#include "core/data/vertex_precision.h"
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/weld.h"
@@ -36,8 +36,8 @@ using test::volume_of;
 // Of a mesh with faults, or that is not what the rule asks for, the border. Parts that touch are apart by 2^-30 of a
 // voxel, a twentieth, or 32 roundings to float, 4e-6: some times that, for the areas of the parts.
 void expect_volume(const TriangleMesh& mesh, double volume, const Rule& rule = {}) {
-  for (const VertexPrecision precision : {VertexPrecision::kDouble, VertexPrecision::kSingle}) {
-    const bool is_single = precision == VertexPrecision::kSingle;
+  for (const CoordinatePrecision precision : {CoordinatePrecision::kDouble, CoordinatePrecision::kSingle}) {
+    const bool is_single = precision == CoordinatePrecision::kSingle;
     const double most = is_single ? 5e-5 : 1e-9;
     const std::optional<FinishedSurface> made = kept(turned(mesh), 20, {.rule = rule, .precision = precision});
     ASSERT_TRUE(made) << volume << ' ' << is_single;

@@ -13,7 +13,7 @@
 
 #include "core/certificate/certificate.h"
 #include "core/data/box.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/evaluation/winding_number.h"
 #include "core/filling/mesh_as_surface.h"
 #include "tests/support/shapes.h"
@@ -52,8 +52,8 @@ std::optional<FinishedSurface> kept(const TriangleMesh& mesh, double side, const
   if (made) {
     EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
     std::vector<Vec3> rounded = made->surface.mesh.vertices;
-    round_to(VertexPrecision::kSingle, rounded);
-    EXPECT_TRUE(options.precision == VertexPrecision::kDouble || rounded == made->surface.mesh.vertices);
+    round_to(CoordinatePrecision::kSingle, rounded);
+    EXPECT_TRUE(options.precision == CoordinatePrecision::kDouble || rounded == made->surface.mesh.vertices);
     EXPECT_EQ(made->surface.sources.size(), made->surface.mesh.triangles.size());
   }
   return made;

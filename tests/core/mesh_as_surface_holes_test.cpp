@@ -12,7 +12,7 @@
 #include "core/cells/node_set.h"
 #include "core/cells/surface_mesh.h"
 #include "core/certificate/certificate.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/components.h"
 #include "core/mesh/exterior_edges.h"
@@ -67,7 +67,7 @@ TEST(MeshAsSurface, ClosesHolesAlongTheThreshold) {
   for (const TriangleMesh& mesh :
        {test::open_box(), test::joined(box_at(2, 0.5), test::open_box()), without(sphere, {{-2, -2, 0.8}, {2, 2, 2}}),
         without(sphere, {{0.2, 0.1, 0.3}, {2, 2, 0.8}})}) {
-    for (const VertexPrecision precision : {VertexPrecision::kDouble, VertexPrecision::kSingle}) {
+    for (const CoordinatePrecision precision : {CoordinatePrecision::kDouble, CoordinatePrecision::kSingle}) {
       const std::optional<FinishedSurface> made = kept(turned(mesh), 27, {.rule = Rule{}, .precision = precision});
       ASSERT_TRUE(made);
       EXPECT_TRUE(holds_all(*made));

@@ -15,7 +15,7 @@
 #include "core/cells/source_plane.h"
 #include "core/cells/surface_cells.h"
 #include "core/certificate/certificate.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/distance/distance.h"
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/weld.h"
@@ -45,7 +45,7 @@ TriangleMesh bent_box(std::uint32_t strips, double depth, double bend, double he
       mesh.vertices.insert(mesh.vertices.end(), {{x, -depth, z}, {x, depth, z}});
     }
   }
-  round_to(VertexPrecision::kSingle, mesh.vertices);
+  round_to(CoordinatePrecision::kSingle, mesh.vertices);
   const std::uint32_t below = 2 * (strips + 1);
   const auto quad = [&mesh](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, d}});
@@ -167,18 +167,18 @@ TEST(MeshAsSurface, IsNoneWhereItWouldBeAnotherSurface) {
 
 TEST(MeshAsSurface, IsRoundedToSinglePrecision) {
   const TriangleMesh ball = weld(test::sphere(6), {});
-  const std::optional<FinishedSurface> made = kept(ball, 20, {.rule = {}, .precision = VertexPrecision::kSingle});
+  const std::optional<FinishedSurface> made = kept(ball, 20, {.rule = {}, .precision = CoordinatePrecision::kSingle});
   ASSERT_TRUE(made);
   TriangleMesh rounded = ball;
-  round_to(VertexPrecision::kSingle, rounded.vertices);
+  round_to(CoordinatePrecision::kSingle, rounded.vertices);
   EXPECT_EQ(sorted_vertices(made->surface.mesh), sorted_vertices(rounded));
   // Where floats are a tenth of a unit apart, vertices meet.
   const TriangleMesh far = test::moved(ball, {1, 1, 1}, {1e6, 0, 0});
-  EXPECT_FALSE(kept(far, 20, {.rule = {}, .precision = VertexPrecision::kSingle}));
+  EXPECT_FALSE(kept(far, 20, {.rule = {}, .precision = CoordinatePrecision::kSingle}));
   EXPECT_TRUE(kept(far, 20));
   // A contour is refused so far from the origin; floats that are those of the mesh need no margin.
   const TriangleMesh whole = test::box_mesh({1e7, 0, 0}, {1e7 + 64, 64, 64});
-  EXPECT_TRUE(kept(whole, 200, {.rule = {}, .precision = VertexPrecision::kSingle}));
+  EXPECT_TRUE(kept(whole, 200, {.rule = {}, .precision = CoordinatePrecision::kSingle}));
 }
 
 TEST(MeshAsSurface, IsSimplified) {

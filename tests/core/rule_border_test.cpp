@@ -53,7 +53,7 @@ std::vector<Vec3> points_off(const TriangleMesh& mesh, test::Random& random, int
 // Whether the border goes once around the points for which the rule holds, and around no others: none of the points is
 // on the wrong side, counted.
 int wrong_points(const TriangleMesh& mesh, const Rule& rule, test::Random& random, int count) {
-  const std::optional<RuleBorder> border = rule_border(mesh, {rule, VertexPrecision::kDouble, kAll});
+  const std::optional<RuleBorder> border = rule_border(mesh, {rule, CoordinatePrecision::kDouble, kAll});
   EXPECT_TRUE(border);
   if (!border) return count;
   EXPECT_TRUE(exterior_edges(border->mesh).empty());

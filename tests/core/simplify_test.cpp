@@ -12,7 +12,7 @@
 #include "core/cells/surface_mesh.h"
 #include "core/certificate/certificate.h"
 #include "core/certificate/component_signs.h"
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 #include "core/distance/distance.h"
 #include "core/merging/checked_simplify.h"
 #include "core/merging/star_change.h"
@@ -150,7 +150,7 @@ TEST(SimplifiedSurface, LeavesWhatMergingMayMove) {
   const WindingNumberEvaluator evaluator(mesh);
   const Lattice lattice{{-1.25, -1.25, -1.25}, {0.125, 0.125, 0.125}, {0, 0, 0}, {21, 21, 21}};
   const NodeSet inside = nodes_inside(evaluator, {}, lattice);
-  const double margin = surface_margin(lattice, VertexPrecision::kDouble) * lattice.spacing.x;
+  const double margin = surface_margin(lattice, CoordinatePrecision::kDouble) * lattice.spacing.x;
   for (const double margins : {17.0, 20.9, 21.1}) {
     SurfaceOptions options;
     options.simplify = margins * margin;
@@ -186,7 +186,7 @@ Moved moved_by(const TriangleMesh& mesh, double simplify) {
 }
 
 TriangleMesh rounded_to_floats(TriangleMesh mesh) {
-  round_to(VertexPrecision::kSingle, mesh.vertices);
+  round_to(CoordinatePrecision::kSingle, mesh.vertices);
   return mesh;
 }
 

@@ -27,7 +27,7 @@ using test::uniform;
 
 DroppedSamples dropped_samples(const SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& inside,
                                double thickness = 0.0, SurfaceFaces faces = SurfaceFaces::kOfContour) {
-  const double farthest = farthest_kept(mesh, inside.lattice(), faces, VertexPrecision::kDouble) + thickness;
+  const double farthest = farthest_kept(mesh, inside.lattice(), faces, CoordinatePrecision::kDouble) + thickness;
   return {surface, inside, thickness, farthest, {}};
 }
 
@@ -74,12 +74,13 @@ TEST(SurfaceMeasures, AreAsFineFarAway) {
   const auto lattice_of = [](const TriangleMesh& mesh) {
     return Lattice{bounding_box(mesh).lower, {0.1, 0.1, 0.1}, {-1, -1, -1}, {12, 12, 12}};
   };
-  const auto off = [&](const TriangleMesh& mesh, VertexPrecision precision) {
+  const auto off = [&](const TriangleMesh& mesh, CoordinatePrecision precision) {
     return farthest_kept(mesh, lattice_of(mesh), SurfaceFaces::kOfMesh, precision);
   };
-  EXPECT_NEAR(off(box, VertexPrecision::kDouble), 2e-4, 1e-4);  // 2^-9 voxels
-  EXPECT_NEAR(off(far, VertexPrecision::kDouble), 2e-4, 1e-4);
-  EXPECT_NEAR(off(far, VertexPrecision::kSingle), 0.25 * 0.1 * std::sqrt(3.0), 1e-9);  // more is too much in any case
+  EXPECT_NEAR(off(box, CoordinatePrecision::kDouble), 2e-4, 1e-4);  // 2^-9 voxels
+  EXPECT_NEAR(off(far, CoordinatePrecision::kDouble), 2e-4, 1e-4);
+  EXPECT_NEAR(off(far, CoordinatePrecision::kSingle), 0.25 * 0.1 * std::sqrt(3.0),
+              1e-9);  // more is too much in any case
 }
 
 // Many are looked at together. Each is as its own distance says.
@@ -99,7 +100,8 @@ TEST(SurfaceMeasures, DropWhatIsFarPointByPoint) {
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
   for (const SurfaceFaces faces : {SurfaceFaces::kOfContour, SurfaceFaces::kOfMesh}) {
     DroppedSamples dropped = dropped_samples(surface, mesh, inside, 0.25 * lattice.spacing.x, faces);
-    const double farthest = farthest_kept(mesh, lattice, faces, VertexPrecision::kDouble) + 0.25 * lattice.spacing.x;
+    const double farthest =
+        farthest_kept(mesh, lattice, faces, CoordinatePrecision::kDouble) + 0.25 * lattice.spacing.x;
     std::size_t count = 0, far = 0;
     dropped.for_each(mesh, [&](const AreaSamples& samples, const std::vector<bool>& is_dropped) {
       std::vector<double> distances(samples.points.size());
@@ -136,7 +138,7 @@ TEST(SurfaceMeasures, AreTheLargestDistanceFromTheMesh) {
   for (int round = 0; round < 6; ++round) {
     const TriangleMesh mesh = rotated(round % 2 == 0 ? test::open_box() : test::sphere(9));
     SurfaceOptions options;
-    options.precision = round > 3 ? VertexPrecision::kSingle : VertexPrecision::kDouble;
+    options.precision = round > 3 ? CoordinatePrecision::kSingle : CoordinatePrecision::kDouble;
     auto [surface, lattice] = surface_of(mesh, 16 + round, options);
     // Some vertices off the mesh, as nothing makes them: not what their sources say.
     if (round % 3 == 2) surface.mesh.vertices[surface.mesh.triangles[7][0]].x += 3.0 * lattice.spacing.x;

@@ -537,7 +537,7 @@ TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {
 
 TEST(Surface, InSinglePrecisionIsRightThere) {
   SurfaceOptions options;
-  options.precision = VertexPrecision::kSingle;
+  options.precision = CoordinatePrecision::kSingle;
   const TriangleMesh mesh = rotated(test::sphere(7));
   for (const auto& [surface, lattice] :
        {surface_of(mesh, 17, options), surface_of(test::box_mesh({0, 0, 0}, {1, 1, 1}), 17, options)}) {
@@ -582,7 +582,7 @@ TEST(Surface, OfALatticeThatIsTooFineOrOutOfRangeIsRefused) {
   const TriangleMesh mesh = test::moved(test::box_mesh({0, 0, 0}, {1, 1, 1}), {1, 1, 1}, {1e15, 1e15, 1e15});
   EXPECT_THROW(surface_of(mesh, 8), LatticeTooFine);
   SurfaceOptions single;
-  single.precision = VertexPrecision::kSingle;
+  single.precision = CoordinatePrecision::kSingle;
   // So far away that 256 roundings are a fifth of a voxel: there are surfaces all the same.
   const TriangleMesh away = test::moved(test::sphere(8), {1, 1, 1}, {3000, -3000, 2000});
   const auto [surface, lattice] = surface_of(away, 9, single);

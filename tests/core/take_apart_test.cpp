@@ -12,8 +12,8 @@
 
 #include "core/cells/node_set.h"
 #include "core/certificate/certificate.h"
+#include "core/data/coordinate_precision.h"
 #include "core/data/lattice.h"
-#include "core/data/vertex_precision.h"
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/components.h"
 #include "core/mesh/weld.h"
@@ -31,7 +31,7 @@ struct Taken {
   bool is_apart;
 };
 
-Taken taken_apart(const TriangleMesh& mesh, VertexPrecision precision = VertexPrecision::kDouble) {
+Taken taken_apart(const TriangleMesh& mesh, CoordinatePrecision precision = CoordinatePrecision::kDouble) {
   Taken taken{mesh, std::vector<std::uint32_t>(mesh.triangles.size()), false};
   std::iota(taken.sources.begin(), taken.sources.end(), 0);
   taken.is_apart = take_apart(taken.mesh, taken.sources, {kDistance, precision}).has_value();
@@ -159,13 +159,13 @@ TEST(TakeApart, TakesCellsApart) {
     const TriangleMesh mesh = test::random_cells(random, 2 + round % 3);
     if (is_closed_and_embedded(mesh)) continue;
     ++touching;
-    for (const VertexPrecision precision : {VertexPrecision::kDouble, VertexPrecision::kSingle}) {
+    for (const CoordinatePrecision precision : {CoordinatePrecision::kDouble, CoordinatePrecision::kSingle}) {
       const Taken taken = taken_apart(mesh, precision);
       EXPECT_TRUE(taken.is_apart) << round;
       EXPECT_TRUE(is_closed_and_embedded(taken.mesh)) << round;
       std::vector<Vec3> rounded = taken.mesh.vertices;
-      round_to(VertexPrecision::kSingle, rounded);
-      EXPECT_EQ(rounded == taken.mesh.vertices, precision == VertexPrecision::kSingle) << round;
+      round_to(CoordinatePrecision::kSingle, rounded);
+      EXPECT_EQ(rounded == taken.mesh.vertices, precision == CoordinatePrecision::kSingle) << round;
     }
   }
   EXPECT_GT(touching, 150);

@@ -1,9 +1,9 @@
-#include "core/data/vertex_precision.h"
+#include "core/data/coordinate_precision.h"
 
 namespace raycone {
 
-Vec3 rounded_to(VertexPrecision precision, const Vec3& p) {
-  if (precision == VertexPrecision::kDouble) return p;
+Vec3 rounded_to(CoordinatePrecision precision, const Vec3& p) {
+  if (precision == CoordinatePrecision::kDouble) return p;
   // Volatile, since GCC 12.2 leaves some of several numbers out when it vectorizes this (-ftree-slp-vectorize).
   const auto rounded = [](double x) {
     const volatile auto single = static_cast<float>(x);
@@ -12,8 +12,8 @@ Vec3 rounded_to(VertexPrecision precision, const Vec3& p) {
   return {rounded(p.x), rounded(p.y), rounded(p.z)};
 }
 
-void round_to(VertexPrecision precision, std::vector<Vec3>& points) {
-  if (precision == VertexPrecision::kDouble) return;
+void round_to(CoordinatePrecision precision, std::vector<Vec3>& points) {
+  if (precision == CoordinatePrecision::kDouble) return;
   for (Vec3& p : points) p = rounded_to(precision, p);
 }
 

@@ -125,8 +125,7 @@ HWY_INLINE TriangleFactors factors_at(const Rays& rays, const TriangleBlock& blo
 // Multiplies by the triangle's factor as its crossing of the ray and the factors of its three edges give it, with every
 // exactness rule.
 void multiply_by_edges(ProductTile& products, std::size_t i, const SolidTriangle& t, const Vec3& q) {
-  const TriangleCrossing crossing = triangle_crossing(t.a, t.b, t.c, {q.y, q.z, {&q.x, 1}}, nullptr);
-  if (crossing.crossed > 0) products.passages[i] += 2 * crossing.sigma * t.orientation;  // a turn is two passages
+  products.passages[i] += 2 * triangle_crossing(t.a, t.b, t.c, q).sigma * t.orientation;  // a turn is two passages
   for (const auto& [from, to] : {std::pair(&t.a, &t.b), std::pair(&t.b, &t.c), std::pair(&t.c, &t.a)}) {
     const auto f = edge_factor(*from, *to, q, edge_side(*from, *to, q));
     if (f) multiply_one(products, i, f->re, -t.orientation * f->im);

@@ -10,16 +10,13 @@ namespace raycone {
 namespace {
 
 void decide(const ScaledMesh& mesh, std::uint32_t triangle, const NumberedRay& ray, PointCrossings& crossings) {
-  const Vec3& q = ray.origin;
-  const TriangleCrossing crossing = mesh.crossing(triangle, {q.y, q.z, {&q.x, 1}});
-  const auto add = [](std::int64_t& sum, std::int64_t term) {
-    std::atomic_ref(sum).fetch_add(term, std::memory_order_relaxed);
+  const QueryCrossing crossing = mesh.crossing(triangle, ray.origin);
+  const auto add = [](auto& sum, auto term) {
+    if (term != 0) std::atomic_ref(sum).fetch_add(term, std::memory_order_relaxed);
   };
-  if (crossing.crossed > 0) add(crossings.n[ray.number], crossing.sigma);
-  if (crossing.met > 0) add(crossings.ties[ray.number], crossing.ties);
-  if (crossing.on_begin < crossing.on_end) {
-    std::atomic_ref(crossings.on_surface[ray.number]).store(1, std::memory_order_relaxed);
-  }
+  add(crossings.n[ray.number], crossing.sigma);
+  add(crossings.ties[ray.number], static_cast<std::uint64_t>(crossing.ties));
+  if (crossing.on_surface) std::atomic_ref(crossings.on_surface[ray.number]).store(1, std::memory_order_relaxed);
 }
 
 // Of the triangles [begin, end), up to the first one at which more effort than `most` has been taken; how much has.
@@ -28,9 +25,8 @@ PassEffort pass_over(const ScaledMesh& mesh, std::size_t begin, std::size_t end,
   PassEffort effort;
   const TriangleMesh& all = mesh.mesh();
   for (std::size_t t = begin; t < end && effort.sum() <= most; ++t) {
-    const Triangle& corners = all.triangles[t];
-    const Box box = box_of(all.vertices[corners[0]], all.vertices[corners[1]], all.vertices[corners[2]]);
-    effort.looks += rays.for_each_met(box, [&](const NumberedRay& ray) {
+    const auto [a, b, c] = corners_of(all, all.triangles[t]);
+    effort.looks += rays.for_each_met(box_of(a, b, c), [&](const NumberedRay& ray) {
       decide(mesh, static_cast<std::uint32_t>(t), ray, crossings);
       ++effort.decisions;
     });

@@ -14,7 +14,7 @@ namespace raycone {
 // By the number of a ray.
 struct PointCrossings {
   std::vector<std::int64_t> n;           // the sum of the signs of its crossings
-  std::vector<std::int64_t> ties;        // edges with D = 0, of triangles whose closed box it meets
+  std::vector<std::uint64_t> ties;       // edges with D = 0, of triangles whose closed box it meets
   std::vector<std::uint8_t> on_surface;  // whether its origin lies on a closed triangle: 1, else 0
 
   explicit PointCrossings(std::size_t rays) : n(rays), ties(rays), on_surface(rays) {}

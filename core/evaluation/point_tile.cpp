@@ -9,9 +9,7 @@ Tally PointTile::evaluate(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
   Tally tally;
   if (count_ == 0) return tally;
   find_crossings(mesh);
-  for (std::size_t i = 0; i < count_; ++i) {
-    tally += {static_cast<std::uint64_t>(degenerate_[i].ties), degenerate_[i].on_surface ? 1U : 0U};
-  }
+  for (std::size_t i = 0; i < count_; ++i) tally += tallies_[i];
   set_values(mesh, sums);
   if (diagnostics_) set_diagnostics(mesh);
   count_ = 0;
@@ -21,7 +19,7 @@ Tally PointTile::evaluate(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
 // First what is certain, then what predicates decide.
 void PointTile::find_crossings(const ScaledMesh& mesh) {
   if (crossings_) return look_up();
-  std::fill_n(degenerate_.begin(), count_, Degenerate{});
+  std::fill_n(tallies_.begin(), count_, Tally{});
   if (mesh.options().ray_engine == RayEngine::kEmbree) {
     ask_embree(mesh);
   } else {
@@ -44,17 +42,16 @@ void PointTile::look_up() {
   for (std::size_t i = 0; i < count_; ++i) {
     const std::size_t ray = rays_[i];
     n_[i] = crossings_->n[ray];
-    degenerate_[i] = {crossings_->ties[ray], crossings_->on_surface[ray] != 0};
+    tallies_[i] = {crossings_->ties[ray], crossings_->on_surface[ray]};
   }
 }
 
 void PointTile::decide(const ScaledMesh& mesh, const RayCandidate& candidate) {
   const auto& [i, triangle] = candidate;
-  const Vec3& q = queries_[i];
-  const TriangleCrossing crossing = mesh.crossing(triangle, {q.y, q.z, {&q.x, 1}});
-  if (crossing.crossed > 0) n_[i] += crossing.sigma;
-  if (crossing.met > 0) degenerate_[i].ties += crossing.ties;
-  if (crossing.on_begin < crossing.on_end) degenerate_[i].on_surface = true;
+  const QueryCrossing crossing = mesh.crossing(triangle, queries_[i]);
+  n_[i] += crossing.sigma;
+  tallies_[i].degenerate += static_cast<std::uint64_t>(crossing.ties);
+  if (crossing.on_surface) tallies_[i].on_surface = 1;
 }
 
 void PointTile::set_values(const ScaledMesh& mesh, PointBlocks::Sums* sums) {
@@ -82,8 +79,8 @@ void PointTile::set_diagnostics(const ScaledMesh& mesh) {
   for (std::size_t i = 0; i < count_; ++i) {
     const std::size_t index = indices_[i];
     diagnostics_->crossings[index] = n_[i];
-    diagnostics_->degenerate[index] = degenerate_[i].ties;
-    diagnostics_->on_surface[index] = degenerate_[i].on_surface ? 1 : 0;
+    diagnostics_->degenerate[index] = static_cast<std::int64_t>(tallies_[i].degenerate);
+    diagnostics_->on_surface[index] = static_cast<std::uint8_t>(tallies_[i].on_surface);
     diagnostics_->error_bound[index] = bounds[i];
   }
 }

@@ -37,12 +37,6 @@ class PointTile {
   Tally evaluate(const ScaledMesh& mesh, PointBlocks::Sums* sums = nullptr);
 
  private:
-  // What exact predicates said about a point.
-  struct Degenerate {
-    std::int64_t ties = 0;
-    bool on_surface = false;
-  };
-
   void find_crossings(const ScaledMesh& mesh);
   void ask_embree(const ScaledMesh& mesh);
   void look_up();
@@ -58,7 +52,7 @@ class PointTile {
   std::array<std::size_t, kTile> indices_, rays_;
   std::array<Vec3, kTile> queries_;
   std::array<std::int64_t, kTile> n_;  // the sums of the signs of the rays' crossings
-  std::array<Degenerate, kTile> degenerate_;
+  std::array<Tally, kTile> tallies_;   // of each point
   std::array<double, kTile> w_;
   SampleTile samples_;
   std::vector<std::uint32_t> candidates_;

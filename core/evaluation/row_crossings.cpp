@@ -20,7 +20,10 @@ void cast_rays(const ScaledMesh& mesh, const LatticeRows& rows, LatticeSums& sum
     for (std::size_t number = begin; number < end; ++number) {
       const Row row = rows.row(number);
       mesh.rays().find_candidates(row.query(0), candidates);
-      for (const std::uint32_t triangle : candidates) collector.add(number, mesh.crossing(triangle, row));
+      for (const std::uint32_t triangle : candidates) {
+        const auto [a, b, c] = corners_of(mesh.mesh(), mesh.mesh().triangles[triangle]);
+        collector.add(number, triangle_crossing(a, b, c, row));
+      }
     }
     collector.finish();
   });

@@ -166,9 +166,9 @@ void ScaledMesh::prepare_points(double points) const {
   }
 }
 
-TriangleCrossing ScaledMesh::crossing(std::uint32_t triangle, const Row& row) const {
-  const Triangle& t = mesh_.triangles[triangle];
-  return triangle_crossing(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], row, nullptr);
+QueryCrossing ScaledMesh::crossing(std::uint32_t triangle, const Vec3& q) const {
+  const auto [a, b, c] = corners_of(mesh_, mesh_.triangles[triangle]);
+  return triangle_crossing(a, b, c, q);
 }
 
 void ScaledMesh::set_values(SampleTile& samples, std::span<const std::int64_t> crossings, std::span<double> values,

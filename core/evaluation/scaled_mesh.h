@@ -15,7 +15,6 @@
 #include "core/crossings/crossings.h"
 #include "core/crossings/projected_grid.h"
 #include "core/crossings/ray_caster.h"
-#include "core/crossings/row.h"
 #include "core/crossings/slab_order.h"
 #include "core/data/box.h"
 #include "core/data/triangle_mesh.h"
@@ -95,7 +94,7 @@ class ScaledMesh {
 
   // What follows takes queries in the scale.
 
-  [[nodiscard]] TriangleCrossing crossing(std::uint32_t triangle, const Row& row) const;
+  [[nodiscard]] QueryCrossing crossing(std::uint32_t triangle, const Vec3& q) const;
 
   // Whether values depend on how many triangles a ray crosses.
   [[nodiscard]] bool counts_crossings() const { return !direct_ || direct_->counts_crossings(); }

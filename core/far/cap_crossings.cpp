@@ -14,10 +14,8 @@ std::array<std::int64_t, kTile> CapCrossings::of(const SampleTile& samples) cons
   std::vector<RayCandidate> doubtful;
   grid_->crossings({queries.data(), samples.count}, {n.data(), samples.count}, doubtful);
   for (const auto& [i, triangle] : doubtful) {
-    const Triangle& t = caps_->triangles[triangle];
-    const Vec3 &a = caps_->vertices[t[0]], &b = caps_->vertices[t[1]], &c = caps_->vertices[t[2]], &q = queries[i];
-    const TriangleCrossing crossing = triangle_crossing(a, b, c, {q.y, q.z, {&q.x, 1}}, nullptr);
-    if (crossing.crossed > 0) n[i] += crossing.sigma;
+    const auto [a, b, c] = corners_of(*caps_, caps_->triangles[triangle]);
+    n[i] += triangle_crossing(a, b, c, queries[i]).sigma;
   }
   return n;
 }

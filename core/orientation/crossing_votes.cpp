@@ -36,8 +36,8 @@ class AxisRays {
     std::size_t ahead = 0, behind = 0;
     grid_.for_each_candidate(row.query(0), [&](std::uint32_t triangle) {
       const Triangle& t = mesh_.triangles[triangle];
-      const TriangleCrossing crossing =
-          triangle_crossing(mesh_.vertices[t[0]], mesh_.vertices[t[1]], mesh_.vertices[t[2]], row, nullptr);
+      const auto [a, b, c] = corners_of(mesh_, t);
+      const TriangleCrossing crossing = triangle_crossing(a, b, c, row);
       if (crossing.crossed == 0 || (canonical_face(t, vertices_) <=> sample.face) == 0) return;
       ++(crossing.crossed == xs.size() ? ahead : behind);
     });

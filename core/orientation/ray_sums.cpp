@@ -45,11 +45,8 @@ std::vector<RaySum> ray_sums(const std::vector<Triangle>& faces, const std::vect
     for (std::size_t n = begin; n < end; ++n) {
       const Vec3 &a = vertices[faces[n][0]], &b = vertices[faces[n][1]], &c = vertices[faces[n][2]];
       grid.for_each_ray(a, b, c, -std::numeric_limits<double>::infinity(), [&](std::size_t i) {
-        const Vec3& q = points[i];
-        const TriangleCrossing crossing = triangle_crossing(a, b, c, {q.y, q.z, {&q.x, 1}, 0.0}, nullptr);
-        const bool on_surface = crossing.on_begin < crossing.on_end;
-        if (crossing.crossed > 0 || on_surface)
-          hits.push_back({i, crossing.crossed > 0 ? crossing.sigma : 0, on_surface, false});
+        const QueryCrossing crossing = triangle_crossing(a, b, c, points[i]);
+        if (crossing.sigma != 0 || crossing.on_surface) hits.push_back({i, crossing.sigma, crossing.on_surface, false});
       });
       if (near > 0.0) {
         for_each_near(grid, points, a, b, c, near, [&](std::size_t i) { hits.push_back({i, 0, false, true}); });

@@ -31,12 +31,11 @@ struct Found {
   }
 
   void add(const TriangleMesh& mesh, std::uint32_t triangle, const Vec3& q) {
-    const Triangle& t = mesh.triangles[triangle];
-    const TriangleCrossing c = triangle_crossing(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]],
-                                                 {q.y, q.z, {&q.x, 1}}, nullptr);
-    if (c.crossed > 0) n += c.sigma;
-    if (c.met > 0) ties += c.ties;
-    on_surface = on_surface || c.on_begin < c.on_end;
+    const auto [a, b, c] = corners_of(mesh, mesh.triangles[triangle]);
+    const QueryCrossing crossing = triangle_crossing(a, b, c, q);
+    n += crossing.sigma;
+    ties += crossing.ties;
+    on_surface = on_surface || crossing.on_surface;
     ++decided;
   }
 };

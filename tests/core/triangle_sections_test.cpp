@@ -41,7 +41,7 @@ void expect_visits(const Vec3& a, const Vec3& b, const Vec3& c, const std::vecto
       Vec3 at;
       at[along] = list[static_cast<std::size_t>(i)];
       at[across] = list[static_cast<std::size_t>(line)];
-      const TriangleCrossing crossing = triangle_crossing(a, b, c, {at.y, at.z, xs}, nullptr);
+      const TriangleCrossing crossing = triangle_crossing(a, b, c, {at.y, at.z, xs});
       const bool concerned = crossing.sigma != 0 || crossing.ties > 0;
       const std::size_t times = visited.count(static_cast<std::uint32_t>(i));
       ASSERT_TRUE(times == 1 || (times == 0 && !concerned)) << "visited " << times << " times";

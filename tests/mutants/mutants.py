@@ -165,7 +165,7 @@ MUTANTS = [
         ("core/boundary/triangle_lanes-inl.h", "kNearTriangle = 0x1p-6 /", "kNearTriangle = 0.0 /"),
         ("core/boundary/triangle_lanes-inl.h", "kNearCorner = 0x1p-8 /", "kNearCorner = 0.0 /")]),
     Mutant("triangles_do_not_cross", "a careful factor holds the triangle's crossing", [
-        ("core/boundary/triangle_lanes-inl.h", "if (crossing.crossed > 0) products", "if (false) products")]),
+        ("core/boundary/triangle_lanes-inl.h", "triangle_crossing(t.a, t.b, t.c, q).sigma", "0")]),
     Mutant("triangles_as_they_come", "the order of faces changes no bit", [
         ("core/boundary/solid_angles.cpp",
          "return s.first != t.first ? s.first < t.first : order(all[s.number], all[t.number]) < 0;",

@@ -9,11 +9,10 @@
 
 namespace raycone {
 
-bool checked_sharpen(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
-                     const DistanceEvaluator& distance, const Lattice& lattice, const SharpenLimits& limits,
-                     int rounds) {
+bool checked_sharpen(SurfaceMesh& surface, const SharpenInput& input, const Lattice& lattice,
+                     const SharpenLimits& limits, int rounds) {
   constexpr int kPartialRounds = 6;
-  Sharpener sharpener(surface, input, normals, distance, limits);
+  Sharpener sharpener(surface, input, limits);
   SurfaceEdit change = sharpener.sharpen();
   NodeSet misplaced(lattice);
   for (int round = 0; round < rounds && sharpener.pulls() > 0; ++round) {

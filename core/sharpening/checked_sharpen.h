@@ -2,20 +2,16 @@
 #pragma once
 
 #include "core/cells/surface_mesh.h"
-#include "core/cells/triangle_normals.h"
 #include "core/data/lattice.h"
-#include "core/data/triangle_mesh.h"
 #include "core/sharpening/sharpen.h"
 
 namespace raycone {
 
 // What Sharpener makes of a surface without faults, without what makes faults: around these nothing is pulled; where
 // that does not help, nothing at all. Only what is near a change is looked at (faults_near(), changed_nodes()).
-// `input`: the mesh that the surface is of; `normals`: its triangles'; `distance`: from it; `rounds`: how often is
-// looked for faults at most. Returns whether anything has been pulled; else the surface is as it was. The same for any
-// number of threads. Needs DefaultFloatingPoint.
-[[nodiscard]] bool checked_sharpen(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
-                                   const DistanceEvaluator& distance, const Lattice& lattice,
+// `rounds`: how often is looked for faults at most. Returns whether anything has been pulled; else the surface is as it
+// was. The same for any number of threads. Needs DefaultFloatingPoint.
+[[nodiscard]] bool checked_sharpen(SurfaceMesh& surface, const SharpenInput& input, const Lattice& lattice,
                                    const SharpenLimits& limits, int rounds = 11);
 
 }  // namespace raycone

@@ -27,9 +27,9 @@ using Faces = std::vector<std::uint32_t>;
 
 class CornerGaps {
  public:
-  CornerGaps(const SurfaceMesh& surface, const TriangleMesh& input, const DistanceEvaluator& distance,
-             const SharpenLimits& limits, const std::vector<Placed>& placed)
-      : surface_(surface), input_(input), distance_(distance), limits_(limits), placed_(placed) {}
+  CornerGaps(const SurfaceMesh& surface, const SharpenInput& input, const SharpenLimits& limits,
+             const std::vector<Placed>& placed)
+      : surface_(surface), input_(input.mesh), distance_(input.distance), limits_(limits), placed_(placed) {}
 
   // Fills what can be filled without faults. Returns whether a gap has been; and whether there are others, which might
   // be, too, but have a face in common with these.
@@ -308,14 +308,14 @@ class CornerGaps {
 }  // namespace
 
 // Gaps may widen into the same faces. Then the first one is filled, and others are looked at again.
-bool fill_corner_gaps(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
-                      const DistanceEvaluator& distance, const Lattice& lattice, const SharpenLimits& limits) {
+bool fill_corner_gaps(SurfaceMesh& surface, const SharpenInput& input, const Lattice& lattice,
+                      const SharpenLimits& limits) {
   constexpr int kTimes = 2;
   bool any = false;
   for (int time = 0; time < kTimes; ++time) {
-    const std::vector<Placed> placed = placements(surface, input, normals, limits.off);
+    const std::vector<Placed> placed = placements(surface, input.mesh, input.normals, limits.off);
     if (!are_mostly_in_planes(placed, limits.fewer)) break;
-    const auto [filled, overlap] = CornerGaps(surface, input, distance, limits, placed).fill(surface, lattice);
+    const auto [filled, overlap] = CornerGaps(surface, input, limits, placed).fill(surface, lattice);
     any = any || filled;
     if (!overlap) break;
   }

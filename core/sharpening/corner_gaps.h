@@ -2,21 +2,17 @@
 #pragma once
 
 #include "core/cells/surface_mesh.h"
-#include "core/cells/triangle_normals.h"
 #include "core/data/lattice.h"
-#include "core/data/triangle_mesh.h"
-#include "core/distance/distance.h"
 #include "core/sharpening/sharpen.h"
 
 namespace raycone {
 
 // Fills gaps that fill_gap() alone cannot: where faces of a plane reach beyond a corner of the mesh, which would have
 // to be folded, all faces around the corner are made anew. What makes faults is left as it was (fill_all()).
-// Nothing is done where it is not planes that the mesh is made of. Precondition: the surface is closed. `input`: the
-// mesh that the surface is of; `normals`: its triangles'; `distance`: from it. Returns whether any gap has been filled;
-// else the surface is as it was. The same for any number of threads. Needs DefaultFloatingPoint.
-[[nodiscard]] bool fill_corner_gaps(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
-                                    const DistanceEvaluator& distance, const Lattice& lattice,
+// Nothing is done where it is not planes that the mesh is made of. Precondition: the surface is closed. Returns whether
+// any gap has been filled; else the surface is as it was. The same for any number of threads. Needs
+// DefaultFloatingPoint.
+[[nodiscard]] bool fill_corner_gaps(SurfaceMesh& surface, const SharpenInput& input, const Lattice& lattice,
                                     const SharpenLimits& limits);
 
 }  // namespace raycone

@@ -13,15 +13,14 @@
 
 namespace raycone {
 
-Sharpener::Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
-                     const DistanceEvaluator& distance, const SharpenLimits& limits)
+Sharpener::Sharpener(SurfaceMesh& surface, const SharpenInput& input, const SharpenLimits& limits)
     : surface_(surface),
       first_vertices_(surface.mesh.vertices.size()),
       first_faces_(surface.mesh.triangles.size()),
-      input_(input),
-      distance_(distance),
+      input_(input.mesh),
+      distance_(input.distance),
       limits_(limits) {
-  const std::vector<Placed> of_all = placements(surface, input, normals, limits.off);
+  const std::vector<Placed> of_all = placements(surface, input.mesh, input.normals, limits.off);
   find_strips(of_all);
   if (strip_vertices_.empty()) return;
   now_ = first_;

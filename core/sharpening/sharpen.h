@@ -15,6 +15,13 @@
 
 namespace raycone {
 
+// The mesh that a surface is of.
+struct SharpenInput {
+  const TriangleMesh& mesh;
+  const TriangleNormals& normals;     // of its triangles
+  const DistanceEvaluator& distance;  // from it
+};
+
 struct SharpenLimits {
   double off = 0.0;    // a face is in the plane of its source if its corners are not farther from it, world units
   double reach = 0.0;  // how far a vertex is pulled at most, likewise
@@ -31,11 +38,9 @@ struct SharpenLimits {
 // DefaultFloatingPoint.
 class Sharpener {
  public:
-  // Adds spare vertices and faces to the surface, which are gone at first. Precondition: sources are triangles of
-  // `input`, or kHole. Both meshes must stay, and nobody else may change them, and so must `distance`, that from
-  // `input`. `normals`: of `input`.
-  Sharpener(SurfaceMesh& surface, const TriangleMesh& input, const TriangleNormals& normals,
-            const DistanceEvaluator& distance, const SharpenLimits& limits);
+  // Adds spare vertices and faces to the surface, which are gone at first. Precondition: sources are triangles of the
+  // input, or kHole. Both meshes must stay, and nobody else may change them, and so must the input's distance.
+  Sharpener(SurfaceMesh& surface, const SharpenInput& input, const SharpenLimits& limits);
   Sharpener(const Sharpener&) = delete;
   Sharpener& operator=(const Sharpener&) = delete;
 

@@ -216,8 +216,9 @@ class SurfaceMaker {
     const Lattice& lattice = inside_.lattice();
     const SharpenLimits limits{std::max(kOff * margins.inner * lattice.largest_spacing(), tolerance_),
                                kReach * lattice.least_spacing(), options_.precision, fewer};
-    const bool is_pulled = checked_sharpen(surface, mesh_, normals_, distance_, lattice, limits);
-    return fill_corner_gaps(surface, mesh_, normals_, distance_, lattice, limits) || is_pulled;
+    const SharpenInput input{mesh_, normals_, distance_};
+    const bool is_pulled = checked_sharpen(surface, input, lattice, limits);
+    return fill_corner_gaps(surface, input, lattice, limits) || is_pulled;
   }
 
   [[nodiscard]] SurfaceBounds bounds(const SurfaceMargins& margins) const {

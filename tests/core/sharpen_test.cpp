@@ -68,12 +68,12 @@ TEST(Sharpening, PullsNothingOffTheMesh) {
   surface.sources[0] = surface.sources[1] = on_the_top(cut);
   const SharpenLimits limits{1e-9, 0.2};
   const DistanceEvaluator from_cut(cut), from_whole(whole_box);
-  Sharpener of_cut(surface, cut, TriangleNormals(cut), from_cut, limits);
+  Sharpener of_cut(surface, {cut, TriangleNormals(cut), from_cut}, limits);
   static_cast<void>(of_cut.sharpen());
   EXPECT_EQ(of_cut.pulls(), 0U);
   for (std::int32_t& source : surface.sources) source %= 24;  // triangles of the whole boxes
   SourceSettler(whole_box, TriangleNormals(whole_box), from_whole, 0.01).settle(surface);
-  Sharpener of_whole(surface, whole_box, TriangleNormals(whole_box), from_whole, limits);
+  Sharpener of_whole(surface, {whole_box, TriangleNormals(whole_box), from_whole}, limits);
   of_whole.sharpen();
   EXPECT_EQ(of_whole.pulls(), 1U);  // the gap between four planes
   EXPECT_NEAR(mesh_statistics(without_gone(surface.mesh)).signed_volume.value_or(0.0), 2.0, 1e-12);
@@ -100,7 +100,7 @@ TEST(Sharpening, PullsTheStripsAnewThatHaveWhatIsKept) {
   SurfaceMesh surface{cut, std::vector<std::int32_t>(cut.triangles.size(), 0)};
   const DistanceEvaluator distance(whole);
   SourceSettler(whole, TriangleNormals(whole), distance, 0.01).settle(surface);
-  Sharpener sharpener(surface, whole, TriangleNormals(whole), distance, {1e-9, 0.2});
+  Sharpener sharpener(surface, {whole, TriangleNormals(whole), distance}, {1e-9, 0.2});
   sharpener.sharpen();
   ASSERT_EQ(sharpener.pulls(), 2U);
   const SurfaceEdit change = sharpener.keep({0, 1, 2, 3}, Sharpener::Kept::kPulled);
@@ -138,7 +138,7 @@ OccupiedCut occupied_cut(double lower) {
 
 bool is_sharpened(OccupiedCut& cut, int rounds) {
   const Lattice lattice{{-1.08, -1.08, -1.08}, {0.1, 0.1, 0.1}, {0, 0, 0}, {60, 70, 30}};  // no node in a cut
-  return checked_sharpen(cut.surface, cut.input, TriangleNormals(cut.input), DistanceEvaluator(cut.input), lattice,
+  return checked_sharpen(cut.surface, {cut.input, TriangleNormals(cut.input), DistanceEvaluator(cut.input)}, lattice,
                          {1e-9, 0.2}, rounds);
 }
 

@@ -74,8 +74,7 @@ std::optional<double> hit_between(const Vec3& p, const Vec3& q, const Vec3& a, c
   if (side_p == 0) return 0.0;
   if (side_q == 0) return 1.0;
   const LongVec3 normal = long_normal(a, b, c);
-  return place_between(std::abs(long_dot(normal, long_difference(p, a))),
-                       std::abs(long_dot(normal, long_difference(q, a))),
+  return place_between(std::abs(dot(normal, long_difference(p, a))), std::abs(dot(normal, long_difference(q, a))),
                        distance_terms(cross_terms(b - a, c - a), p, q, a), p, q, a, b, c);
 }
 
@@ -147,10 +146,10 @@ std::optional<SegmentHit> HitFinder::hit(Known& t, const Vec3& other, Way way) c
   if (t.side == 0) return SegmentHit{way == Way::kFromEnd ? 0.0 : 1.0, t.triangle};
   if (side == 0) return SegmentHit{way == Way::kFromEnd ? 1.0 : 0.0, t.triangle};
   if (!t.has_distance) {
-    t.of_end = std::abs(long_dot(t.long_normal, long_difference(end_, *t.a)));
+    t.of_end = std::abs(dot(t.long_normal, long_difference(end_, *t.a)));
     t.has_distance = true;
   }
-  const Long of_other = std::abs(long_dot(t.long_normal, long_difference(other, *t.a)));
+  const Long of_other = std::abs(dot(t.long_normal, long_difference(other, *t.a)));
   const double terms = distance_terms(t.normal.terms, end_, other, *t.a);
   const double at = way == Way::kFromEnd ? place_between(t.of_end, of_other, terms, end_, other, *t.a, *t.b, *t.c)
                                          : place_between(of_other, t.of_end, terms, other, end_, *t.a, *t.b, *t.c);

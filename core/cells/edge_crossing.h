@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "core/cells/long_vec3.h"
 #include "core/data/box.h"
 #include "core/data/triangle_mesh.h"
+#include "core/exact/long_vec3.h"
 
 namespace raycone {
 

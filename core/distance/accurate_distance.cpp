@@ -44,7 +44,7 @@ AccurateTriangle::AccurateTriangle(const Vec3& a, const Vec3& b, const Vec3& c) 
   std::array<double, 3> squares;
   for (std::size_t i = 0; i < 3; ++i) {
     t.edge_squares[i] = dot(t.edges[i], t.edges[i]);
-    squares[i] = square(t.edges[i].rounded());
+    squares[i] = square(rounded(t.edges[i]));
   }
   t.longest = static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
   const DoubleDoubleVec3& longest = t.edges[t.longest];
@@ -59,17 +59,17 @@ AccurateTriangle::AccurateTriangle(const Vec3& a, const Vec3& b, const Vec3& c) 
 }
 
 double AccurateTriangle::square_to_segment(const DoubleDoubleVec3& to_query, std::size_t edge) const {
-  if (parts_.edge_squares[edge].high < kPoint) return square(to_query.rounded());
+  if (parts_.edge_squares[edge].high < kPoint) return square(rounded(to_query));
   DoubleDouble along = dot(to_query, parts_.edges[edge]) / parts_.edge_squares[edge];
   if (along < kZero) along = kZero;
   if (kOne < along) along = kOne;
-  return square((to_query - along * parts_.edges[edge]).rounded());
+  return square(rounded(to_query - along * parts_.edges[edge]));
 }
 
 // Whether doubles are sure that the plane's closest point is on the other side of the longest edge than the triangle,
 // or beyond its apex.
 bool AccurateTriangle::is_beside(const Vec3& to_query) const {
-  const Vec3 edge = parts_.edges[parts_.longest].rounded(), height = parts_.height.rounded();
+  const Vec3 edge = rounded(parts_.edges[parts_.longest]), height = rounded(parts_.height);
   const Vec3 beside = to_query - (dot(to_query, edge) / square(edge)) * edge;
   const double up = dot(beside, height) / square(height);
   const double off = kOff * sum_of_lengths(to_query, edge) / norm(height);
@@ -78,13 +78,13 @@ bool AccurateTriangle::is_beside(const Vec3& to_query) const {
 
 // Of the triangle's plane; infinity where its closest point is outside of the triangle.
 double AccurateTriangle::square_to_plane(const Edges& to_query) const {
-  if (parts_.is_thin || is_beside(to_query[parts_.longest].rounded())) return HUGE_VAL;
+  if (parts_.is_thin || is_beside(rounded(to_query[parts_.longest]))) return HUGE_VAL;
   const DoubleDoubleVec3& edge = parts_.edges[parts_.longest];
   const DoubleDouble along = dot(to_query[parts_.longest], edge) / parts_.edge_squares[parts_.longest];
   const DoubleDoubleVec3 beside = to_query[parts_.longest] - along * edge;
   const DoubleDouble up = dot(beside, parts_.height) / parts_.height_square;
   const bool inside = !(up < kZero) && !(along < up * parts_.apex) && !(kOne - along < up * (kOne - parts_.apex));
-  return inside ? square((beside - up * parts_.height).rounded()) : HUGE_VAL;
+  return inside ? square(rounded(beside - up * parts_.height)) : HUGE_VAL;
 }
 
 double AccurateTriangle::squared_distance(const Vec3& p) const {
@@ -93,7 +93,7 @@ double AccurateTriangle::squared_distance(const Vec3& p) const {
   double least = square_to_plane(to_query);
   if (least != HUGE_VAL) return least;
   std::array<double, 3> from{};
-  for (std::size_t i = 0; i < 3; ++i) from[i] = least_distance(to_query[i].rounded(), parts_.edges[i].rounded());
+  for (std::size_t i = 0; i < 3; ++i) from[i] = least_distance(rounded(to_query[i]), rounded(parts_.edges[i]));
   const auto first = static_cast<std::size_t>(std::ranges::min_element(from) - from.begin());
   least = square_to_segment(to_query[first], first);
   // The others, unless they are farther than rounding could hide.

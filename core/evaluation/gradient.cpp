@@ -36,7 +36,7 @@ QuadVec3 careful_part(const Vec3& from, const Vec3& to, double weight, const Vec
   if (square == 0) return {0, 0, 0};
   const Quad opening = ab < 0 ? square / (la * lb - ab) : la * lb + ab;
   const Quad factor = weight * ((la + lb) / (la * lb * opening));
-  return {factor * normal.x, factor * normal.y, factor * normal.z};
+  return factor * normal;
 }
 
 // Infinite where no double holds it.
@@ -70,8 +70,7 @@ GradientEvaluator::GradientEvaluator(const TriangleMesh& mesh, const std::vector
 Vec3 GradientEvaluator::sum_unscaled(const Vec3& point) const {
   QuadVec3 sum{0, 0, 0};
   for (const GradientSegment& s : segments_) {
-    const QuadVec3 part = careful_part(inverse_(s.from), inverse_(s.to), s.weight, point);
-    sum = {sum.x + part.x, sum.y + part.y, sum.z + part.z};
+    sum = sum + careful_part(inverse_(s.from), inverse_(s.to), s.weight, point);
   }
   return Vec3{within_doubles(sum.x), within_doubles(sum.y), within_doubles(sum.z)} + kNoMinusZero;
 }

@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "core/exact/exact_integers.h"
+#include "core/exact/long_vec3.h"
 
 namespace raycone {
 namespace {
@@ -32,7 +33,7 @@ Quad quotient(const mpz_class& numerator, const mpz_class& denominator) {
 
 // The square of the distance from the origin to the segment.
 Quad square_to_segment(const IntegerVec3& a, const IntegerVec3& b) {
-  const IntegerVec3 edge = minus(b, a);
+  const IntegerVec3 edge = b - a;
   const mpz_class square = dot(edge, edge), along = -dot(a, edge);
   if (along <= 0) return rounded(dot(a, a));
   if (along >= square) return rounded(dot(b, b));
@@ -43,7 +44,7 @@ Quad square_to_segment(const IntegerVec3& a, const IntegerVec3& b) {
 // The square of the distance from the origin to the triangle.
 Quad square_to_triangle(const Corners& corners) {
   const auto& [a, b, c] = corners;
-  const IntegerVec3 normal = cross(minus(b, a), minus(c, a));
+  const IntegerVec3 normal = cross(b - a, c - a);
   const mpz_class square = dot(normal, normal);
   const auto inside_of = [&](const IntegerVec3& from, const IntegerVec3& to) {
     return dot(cross(from, to), normal) >= 0;
@@ -63,15 +64,12 @@ Quad distance_to_triangle(const Points& points, const Vec3& q) {
 }
 
 // In 64 bits and with the exponents of 15 bits: off by less than 1e-18.
-long double rough_square(const std::array<long double, 3>& v) { return v[0] * v[0] + v[1] * v[1] + v[2] * v[2]; }
+long double rough_square(const LongVec3& v) { return dot(v, v); }
 
 long double rough_square_to_nearest_corner(const TriangleMesh& mesh, const Vec3& q) {
   long double least = HUGE_VALL;
   for (const Triangle& t : mesh.triangles) {
-    for (const Vec3& p : corners_of(mesh, t)) {
-      least = std::min(least, rough_square({static_cast<long double>(p.x) - q.x, static_cast<long double>(p.y) - q.y,
-                                            static_cast<long double>(p.z) - q.z}));
-    }
+    for (const Vec3& p : corners_of(mesh, t)) least = std::min(least, rough_square(long_difference(p, q)));
   }
   return least;
 }
@@ -83,7 +81,7 @@ long double rough_square_to_box(const Points& points, const Vec3& q) {
     const long double below = static_cast<long double>(low) - q[axis], above = static_cast<long double>(q[axis]) - high;
     outside[static_cast<std::size_t>(axis)] = std::max({below, above, 0.0L});
   }
-  return rough_square(outside);
+  return rough_square({outside[0], outside[1], outside[2]});
 }
 
 }  // namespace

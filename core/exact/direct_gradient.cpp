@@ -41,9 +41,7 @@ void add_side(const Vec3& from, const Vec3& to, const Vec3& q, DirectGradient& s
   const Quad square = dot(normal, normal);
   if (square == 0) return;
   const Quad factor = (swapped ? -1 : 1) * cosines_by_square(a, b, step, square) / kFullSolidAngle;
-  sum.value.x += factor * normal.x;
-  sum.value.y += factor * normal.y;
-  sum.value.z += factor * normal.z;
+  sum.value = sum.value + factor * normal;
   sum.magnitude += absolute(factor) * sqrtq(square);
 }
 

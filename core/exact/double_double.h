@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/data/vec3.h"
+#include "core/data/vec3_of.h"
 
 namespace raycone {
 
@@ -59,25 +60,13 @@ inline bool operator<(const DoubleDouble& a, const DoubleDouble& b) {
   return a.high < b.high || (a.high == b.high && a.low < b.low);
 }
 
-struct DoubleDoubleVec3 {
-  DoubleDouble x, y, z;
+using DoubleDoubleVec3 = Vec3Of<DoubleDouble>;
 
-  [[nodiscard]] Vec3 rounded() const { return {x.high, y.high, z.high}; }
-};
+inline Vec3 rounded(const DoubleDoubleVec3& v) { return {v.x.high, v.y.high, v.z.high}; }
 
 // a - b, exactly.
 inline DoubleDoubleVec3 exact_difference(const Vec3& a, const Vec3& b) {
   return {exact_sum(a.x, -b.x), exact_sum(a.y, -b.y), exact_sum(a.z, -b.z)};
-}
-
-inline DoubleDoubleVec3 operator-(const DoubleDoubleVec3& a, const DoubleDoubleVec3& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline DoubleDoubleVec3 operator*(const DoubleDouble& s, const DoubleDoubleVec3& a) {
-  return {s * a.x, s * a.y, s * a.z};
-}
-inline DoubleDouble dot(const DoubleDoubleVec3& a, const DoubleDoubleVec3& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 }  // namespace raycone

@@ -9,18 +9,11 @@
 #include <cmath>
 
 #include "core/data/vec3.h"
+#include "core/data/vec3_of.h"
 
 namespace raycone::exact {
 
-struct IntegerVec3 {
-  mpz_class x, y, z;
-};
-
-inline IntegerVec3 minus(const IntegerVec3& a, const IntegerVec3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-inline mpz_class dot(const IntegerVec3& a, const IntegerVec3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-inline IntegerVec3 cross(const IntegerVec3& a, const IntegerVec3& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
+using IntegerVec3 = Vec3Of<mpz_class>;
 
 inline constexpr int kDigits = 53;  // of a double
 
@@ -59,7 +52,7 @@ inline ScaledTriangle as_integers(const std::array<Vec3, 3>& points, const Vec3&
   result.exponent = exponent_to_integers(q);
   for (const Vec3& p : points) result.exponent = std::max(result.exponent, exponent_to_integers(p));
   const IntegerVec3 origin = integers(q, result.exponent);
-  for (std::size_t i = 0; i < 3; ++i) result.corners[i] = minus(integers(points[i], result.exponent), origin);
+  for (std::size_t i = 0; i < 3; ++i) result.corners[i] = integers(points[i], result.exponent) - origin;
   return result;
 }
 

@@ -24,11 +24,8 @@ struct Fractions {
 
 const mpz_class& component(const IntegerVec3& v, int axis) { return axis == 0 ? v.x : axis == 1 ? v.y : v.z; }
 
-IntegerVec3 times(const IntegerVec3& v, const mpz_class& factor) { return {v.x * factor, v.y * factor, v.z * factor}; }
-IntegerVec3 plus(const IntegerVec3& a, const IntegerVec3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-
 Fractions with_positive_denominator(Fractions f) {
-  if (sgn(f.denominator) < 0) f = {times(f.numerators, -1), -f.denominator};
+  if (sgn(f.denominator) < 0) f = {-1 * f.numerators, -f.denominator};
   return f;
 }
 
@@ -160,18 +157,17 @@ ExactPoints::Number ExactPoints::add(const Vec3& vertex) {
 
 ExactPoints::Number ExactPoints::add_on_plane(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& plane) {
   const IntegerVec3 from = table_->integers(a), to = table_->integers(b), corner = table_->integers(plane[0]);
-  const IntegerVec3 normal =
-      exact::cross(minus(table_->integers(plane[1]), corner), minus(table_->integers(plane[2]), corner));
-  const mpz_class before = exact::dot(normal, minus(from, corner)), behind = exact::dot(normal, minus(to, corner));
-  return table_->add({minus(times(to, before), times(from, behind)), before - behind});
+  const IntegerVec3 normal = cross(table_->integers(plane[1]) - corner, table_->integers(plane[2]) - corner);
+  const mpz_class before = dot(normal, from - corner), behind = dot(normal, to - corner);
+  return table_->add({before * to - behind * from, before - behind});
 }
 
 ExactPoints::Number ExactPoints::add_crossing(int axis, Number a, Number b, Number c, Number d) {
   const Fractions &from = table_->points[a], &to = table_->points[b];
   const mpz_class before = determinant(axis, table_->points[c], table_->points[d], from);
   const mpz_class behind = determinant(axis, table_->points[c], table_->points[d], to);
-  return table_->add({minus(times(to.numerators, before), times(from.numerators, behind)),
-                      to.denominator * before - from.denominator * behind});
+  return table_->add(
+      {before * to.numerators - behind * from.numerators, to.denominator * before - from.denominator * behind});
 }
 
 ExactPoints::Number ExactPoints::add_between(const std::array<Number, 3>& points,
@@ -181,7 +177,7 @@ ExactPoints::Number ExactPoints::add_between(const std::array<Number, 3>& points
     const Fractions& point = table_->points[points[i]];
     const mpz_class factor =
         weights[i] * table_->points[points[(i + 1) % 3]].denominator * table_->points[points[(i + 2) % 3]].denominator;
-    mean = {plus(mean.numerators, times(point.numerators, factor)), mean.denominator + point.denominator * factor};
+    mean = {mean.numerators + factor * point.numerators, mean.denominator + point.denominator * factor};
   }
   return table_->add(mean);
 }
@@ -217,10 +213,9 @@ int ExactPoints::axis_to_see(const std::array<Number, 3>& triangle) const {
 int ExactPoints::side(const std::array<Vec3, 3>& triangle, Number point) const {
   if (const int sign = sure_side(triangle, rounded(point)); sign != 0) return sign;
   const IntegerVec3 corner = table_->integers(triangle[0]);
-  const IntegerVec3 normal =
-      exact::cross(minus(table_->integers(triangle[1]), corner), minus(table_->integers(triangle[2]), corner));
+  const IntegerVec3 normal = cross(table_->integers(triangle[1]) - corner, table_->integers(triangle[2]) - corner);
   const Fractions& p = table_->points[point];
-  return sgn(exact::dot(normal, minus(p.numerators, times(corner, p.denominator))));
+  return sgn(dot(normal, p.numerators - p.denominator * corner));
 }
 
 }  // namespace raycone

@@ -11,9 +11,9 @@ double place_at_plane(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b
   int exponent = 0;
   for (const Vec3& v : {p, q, a, b, c}) exponent = std::max(exponent, exact::exponent_to_integers(v));
   const exact::IntegerVec3 origin = exact::integers(a, exponent);
-  const auto from_a = [&](const Vec3& v) { return exact::minus(exact::integers(v, exponent), origin); };
-  const exact::IntegerVec3 normal = exact::cross(from_a(b), from_a(c));
-  const mpz_class of_p = abs(exact::dot(normal, from_a(p))), of_q = abs(exact::dot(normal, from_a(q)));
+  const auto from_a = [&](const Vec3& v) { return exact::integers(v, exponent) - origin; };
+  const exact::IntegerVec3 normal = cross(from_a(b), from_a(c));
+  const mpz_class of_p = abs(dot(normal, from_a(p))), of_q = abs(dot(normal, from_a(q)));
   constexpr int kBits = 64;
   const mpz_class place = (of_p << kBits) / (of_p + of_q);
   return std::ldexp(place.get_d(), -kBits);

@@ -39,7 +39,7 @@ int volume_sign(const std::vector<Triangle>& triangles, const std::vector<Vec3>&
   }
   const auto integers = [&](std::uint32_t v) { return exact::integers(vertices[v], exponent); };
   mpz_class sum = 0;
-  for (const Triangle& t : triangles) sum += exact::dot(integers(t[0]), exact::cross(integers(t[1]), integers(t[2])));
+  for (const Triangle& t : triangles) sum += dot(integers(t[0]), cross(integers(t[1]), integers(t[2])));
   return sgn(sum);
 }
 

@@ -1,9 +1,8 @@
 #include "core/mesh/mesh_statistics.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
+#include "core/exact/long_vec3.h"
 #include "core/exact/predicates.h"
 #include "core/machine/floating_point.h"
 #include "core/mesh/components.h"
@@ -37,30 +36,17 @@ std::uint64_t count_degenerate(const TriangleMesh& mesh) {
 
 // Sum of the signed volumes of tetrahedra from the middle of the box, which keeps a distant mesh from cancelling.
 double signed_volume(const TriangleMesh& mesh) {
-  using Wide = long double;  // for its exponents, too: no product of three coordinates leaves them
   const Vec3 centre = middle(bounding_box(mesh));
-  const auto from_centre = [&](std::uint32_t v) {
-    const Vec3& p = mesh.vertices[v];
-    return std::array<Wide, 3>{Wide(p.x) - centre.x, Wide(p.y) - centre.y, Wide(p.z) - centre.z};
-  };
-  Wide sum = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const auto a = from_centre(t[0]), b = from_centre(t[1]), c = from_centre(t[2]);
-    sum += a[0] * (b[1] * c[2] - b[2] * c[1]) + a[1] * (b[2] * c[0] - b[0] * c[2]) + a[2] * (b[0] * c[1] - b[1] * c[0]);
-  }
+  const auto from_centre = [&](std::uint32_t v) { return long_difference(mesh.vertices[v], centre); };
+  long double sum = 0;
+  for (const Triangle& t : mesh.triangles) sum += dot(from_centre(t[0]), cross(from_centre(t[1]), from_centre(t[2])));
   return static_cast<double>(sum / 6) + 0.0;  // never -0, which a small volume may round to
 }
 
-// Wide for the exponents of squares. Corners are moved to the first one before they are multiplied.
 double surface_area(const TriangleMesh& mesh) {
-  using Wide = long double;
-  Wide sum = 0;
+  long double sum = 0;
   for (const Triangle& t : mesh.triangles) {
-    const Vec3 &p = mesh.vertices[t[0]], &q = mesh.vertices[t[1]], &r = mesh.vertices[t[2]];
-    const Wide ax = Wide(q.x) - p.x, ay = Wide(q.y) - p.y, az = Wide(q.z) - p.z;
-    const Wide bx = Wide(r.x) - p.x, by = Wide(r.y) - p.y, bz = Wide(r.z) - p.z;
-    const Wide x = ay * bz - az * by, y = az * bx - ax * bz, z = ax * by - ay * bx;
-    sum += std::sqrt(x * x + y * y + z * z);
+    sum += norm(long_normal(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]));
   }
   return static_cast<double>(sum / 2);
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/exact/exact_determinant.h"
+#include "core/exact/long_vec3.h"
 #include "core/exact/scale.h"
 #include "core/machine/threads.h"
 #include "core/sampling/random.h"
@@ -19,16 +20,13 @@ std::uint64_t count_of(const SampleGroup& group) {
   return std::visit([](const auto& one) { return one.count; }, group);
 }
 
-// Twice the area along each axis, each part rounded to 53 bits or more: its exponents are those of any triangle.
-struct AreaVector {
-  long double x, y, z;
-};
 // Whether no coordinate has bits below 2^-453, so that products of differences have none below 2^-906.
 bool has_no_tiny_bits(const Vec3& p) {
   return std::ranges::all_of(std::array{p.x, p.y, p.z}, [](double x) { return x == 0.0 || std::abs(x) > 0x1p-400; });
 }
 
-AreaVector area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
+// Twice the area along each axis, each part rounded to 53 bits or more: with exponents for those of any triangle.
+LongVec3 area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 rounded = rounded_cross_of_differences(b, c, a);
   const double largest = largest_coordinate(rounded);
   if (largest > 0x1p-900 && largest < 0x1p1000) return {rounded.x, rounded.y, rounded.z};
@@ -37,13 +35,11 @@ AreaVector area_vector(const Vec3& a, const Vec3& b, const Vec3& c) {
   return {static_cast<long double>(v.x), static_cast<long double>(v.y), static_cast<long double>(v.z)};
 }
 
-long double norm(const AreaVector& v) { return std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z); }
-
 long double exact_doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) { return norm(area_vector(a, b, c)); }
 
 // Of a triangle with an area, whatever its shape and size.
 Vec3 exact_unit_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const AreaVector v = area_vector(a, b, c);
+  const LongVec3 v = area_vector(a, b, c);
   const long double size = norm(v);
   return {static_cast<double>(v.x / size), static_cast<double>(v.y / size), static_cast<double>(v.z / size)};
 }

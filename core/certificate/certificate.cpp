@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <span>
 #include <tuple>
 #include <utility>
@@ -17,9 +16,9 @@
 #include "core/machine/sum_over.h"
 #include "core/machine/threads.h"
 #include "core/mesh/edge_uses.h"
+#include "core/mesh/equal_vertices.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/vertex_faces.h"
-#include "core/mesh/weld.h"
 
 namespace raycone {
 namespace {
@@ -102,22 +101,16 @@ std::uint64_t degenerate_faces(const TriangleMesh& mesh) {
   return sum_over(mesh.triangles.size(), [&](std::size_t face) { return is_degenerate(mesh, face); });
 }
 
-// Equal for equal positions.
-std::size_t hash_of(const Vec3& p) {
-  std::uint64_t hash = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    hash = (hash ^ std::bit_cast<std::uint64_t>(p[axis] + 0.0)) * 0x9E3779B97F4A7C15;  // -0 becomes 0
-    hash ^= hash >> 32U;
-  }
-  return static_cast<std::size_t>(hash);
-}
-
 // How many vertices there are, beyond the first, at positions of several. Marks all of these where `marked` is not
 // null.
 std::uint64_t equal_vertices(const std::vector<Vec3>& vertices, std::vector<std::uint8_t>* marked = nullptr) {
   constexpr std::size_t kBuckets = 1024;
+  const VertexHash hash;
   const Buckets<std::uint32_t> buckets(vertices.size(), kBuckets, [&](std::size_t begin, std::size_t end, auto emit) {
-    for (std::size_t v = begin; v < end; ++v) emit(hash_of(vertices[v]) % kBuckets, static_cast<std::uint32_t>(v));
+    for (std::size_t v = begin; v < end; ++v) {
+      const Vec3 without_signs = vertices[v] + Vec3{0.0, 0.0, 0.0};  // of zeros, which are equal
+      emit(hash(without_signs) % kBuckets, static_cast<std::uint32_t>(v));
+    }
   });
   std::atomic<std::uint64_t> equal = 0;
   parallel_for_each(kBuckets, 8, [&](std::size_t n) {

@@ -31,13 +31,9 @@ std::int64_t index_from(double value) {
   return static_cast<std::int64_t>(value);
 }
 
-Vec3 sides_of(const Box& box) { return box.upper - box.lower; }
-
-double longest(const Vec3& sides) { return std::max({sides.x, sides.y, sides.z}); }
-
 Lattice sample(const Box& box, const LongestSide& request, bool centers) {
-  const Vec3 sides = sides_of(box);
-  const double length = longest(sides);
+  const Vec3 sides = box.upper - box.lower;
+  const double length = longest_side(box);
   const auto intervals = static_cast<double>(centers ? request.count : std::max<std::int64_t>(request.count - 1, 1));
   // A box without extent has one sample whatever the spacing.
   const double spacing = length > 0.0 ? length / intervals : 1.0;
@@ -90,7 +86,7 @@ class FlatSides {
 };
 
 Lattice sample(const Box& box, const SampleCounts& request, bool centers, std::vector<Warning>& warnings) {
-  const Vec3 sides = sides_of(box);
+  const Vec3 sides = box.upper - box.lower;
   Lattice lattice;
   for (int axis = 0; axis < 3; ++axis) {
     const std::int64_t count = request.counts[static_cast<std::size_t>(axis)];
@@ -152,7 +148,7 @@ void add_samples(Lattice& lattice, const VoxelPadding& padding) {
 }
 
 void check_finite(const Box& box) {
-  if (std::isfinite(longest(sides_of(box)))) return;
+  if (std::isfinite(longest_side(box))) return;
   throw LimitError("the box is too large for double precision; see --scale");
 }
 
@@ -173,7 +169,7 @@ void check_positive_spacing(const Lattice& lattice) {
 }  // namespace
 
 Box widened(Box box, const WorldPadding& padding) {
-  const double width = padding.percent ? padding.width / 100.0 * longest(sides_of(box)) : padding.width;
+  const double width = padding.percent ? padding.width / 100.0 * longest_side(box) : padding.width;
   for (int axis = 0; axis < 3; ++axis) {
     box.lower[axis] -= width;
     box.upper[axis] += width;

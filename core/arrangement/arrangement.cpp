@@ -7,7 +7,6 @@
 #include "core/arrangement/plane_arrangement.h"
 #include "core/exact/predicates.h"
 #include "core/intersections/self_intersections.h"
-#include "core/intersections/triangle_pair.h"
 #include "core/mesh/disjoint_sets.h"
 
 namespace raycone {

@@ -23,14 +23,6 @@ int sure_sign(const Vec3& turn, const Vec3& terms, const Vec3& step) {
   return static_cast<int>(volume > trust) - static_cast<int>(volume < -trust);
 }
 
-bool boxes_meet(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [low, high] = std::minmax({a[axis], b[axis], c[axis]});
-    if (std::max(p[axis], q[axis]) < low || std::min(p[axis], q[axis]) > high) return false;
-  }
-  return true;
-}
-
 // Of the line through p and q, which is not parallel to the triangle.
 bool line_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
   const int first = plane_side(p, q, a, b), second = plane_side(p, q, b, c);
@@ -81,7 +73,7 @@ std::optional<double> hit_between(const Vec3& p, const Vec3& q, const Vec3& a, c
 }  // namespace
 
 std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  if (!boxes_meet(p, q, a, b, c)) return std::nullopt;
+  if (!overlap(box_of(p, q), box_of(a, b, c))) return std::nullopt;
   return hit_between(p, q, a, b, c, plane_side(a, b, c, p), plane_side(a, b, c, q));
 }
 

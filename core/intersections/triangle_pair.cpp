@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "core/data/box.h"
 #include "core/exact/predicates.h"
 
 namespace raycone {
@@ -31,18 +32,10 @@ int axis_of(const Corners3& t) {
   return axis;
 }
 
-bool boxes_meet(const Segment3& s, const Segment3& t) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const auto [s_low, s_high] = std::minmax({s.from[axis], s.to[axis]});
-    const auto [t_low, t_high] = std::minmax({t.from[axis], t.to[axis]});
-    if (s_high < t_low || t_high < s_low) return false;
-  }
-  return true;
-}
-
 // Whether two closed segments meet, which may be points.
 bool segments_meet(const Segment3& s, const Segment3& t) {
-  if (!boxes_meet(s, t) || plane_side(s.from, s.to, t.from, t.to) != 0) return false;
+  if (!overlap(box_of(s.from, s.to), box_of(t.from, t.to))) return false;
+  if (plane_side(s.from, s.to, t.from, t.to) != 0) return false;
   // In one plane they meet where no axis shows the ends of one on one side of the other. On a line, boxes tell.
   for (int axis = 0; axis < 3; ++axis) {
     const auto apart = [axis](const Segment3& line, const Segment3& other) {

@@ -20,12 +20,14 @@
 #include <cstring>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/evaluation/winding_number.h"
 #include "core/machine/threads.h"
 #include "core/mesh/weld.h"
 #include "io/mesh/read_mesh.h"
+#include "tests/support/diagnosed.h"
 #include "tests/support/differences.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
@@ -109,15 +111,13 @@ struct Quality {
 
 Quality quality_of(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
   const std::size_t n = queries.size();
-  std::vector<double> values(n), bounds(n), ratios(n);
-  std::vector<std::int64_t> crossings(n), degenerate(n);
-  std::vector<std::uint8_t> on_surface(n);
-  const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
-  WindingNumberEvaluator(mesh).evaluate(queries, values, nullptr, &diagnostics);
+  std::vector<double> ratios(n);
+  const test::Diagnosed found = test::diagnosed(WindingNumberEvaluator(mesh), queries);
+  const std::vector<double>&values = found.values, &bounds = found.bounds;
   std::atomic<std::size_t> violated = 0, undecided = 0;
   parallel_for(n, 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (on_surface[i] != 0) continue;
+      if (found.on_surface[i] != 0) continue;
       const Vec3& q = queries[i];
       const test::WithinQuad exact = test::winding_number_within(mesh, q);
       using Quad = __float128;
@@ -215,8 +215,7 @@ struct Bounded {
 
 struct Sampled {
   std::vector<Vec3> points;
-  std::vector<double> values, bounds;
-  std::vector<std::uint8_t> on_surface;
+  test::Diagnosed found;
 };
 
 // What evaluates them.
@@ -231,36 +230,32 @@ Sampled sampled(const TriangleMesh& mesh, Engine engine, double tolerance, std::
       box.lower - 0.1 * size, (1.2 / static_cast<double>(side - 1)) * size, {0, 0, 0}, {side, side, side}};
   const bool on_lattice = engine == Engine::kBlocksOfLattices;
   const std::size_t n = on_lattice ? static_cast<std::size_t>(whole(lattice).size()) : count;
-  Sampled all{std::vector<Vec3>(n), std::vector<double>(n), std::vector<double>(n), std::vector<std::uint8_t>(n)};
+  std::vector<Vec3> points(n);
   for (std::size_t i = 0; i < n; ++i) {
     const auto at = static_cast<std::int64_t>(i);
-    all.points[i] = on_lattice ? Vec3{lattice.coordinate(0, at % side), lattice.coordinate(1, at / side % side),
-                                      lattice.coordinate(2, at / side / side)}
-                               : test::uniform_point(random, {box.lower - 0.1 * size, box.upper + 0.1 * size});
+    points[i] = on_lattice ? Vec3{lattice.coordinate(0, at % side), lattice.coordinate(1, at / side % side),
+                                  lattice.coordinate(2, at / side / side)}
+                           : test::uniform_point(random, {box.lower - 0.1 * size, box.upper + 0.1 * size});
   }
-  std::vector<std::int64_t> crossings(n), degenerate(n);
-  const Diagnostics diagnostics{crossings, degenerate, all.on_surface, all.bounds};
   const auto samples = static_cast<double>(n);
   const WindingNumberEvaluator evaluator(
       mesh, {.summation = engine == Engine::kFarField ? Summation::kFarField : Summation::kBlocks,
              .accuracy = {.tolerance = tolerance, .samples = samples, .points = on_lattice ? 0.0 : samples}});
-  if (on_lattice) {
-    evaluator.evaluate(lattice, whole(lattice), all.values, nullptr, &diagnostics);
-  } else {
-    evaluator.evaluate(all.points, all.values, nullptr, &diagnostics);
-  }
-  return all;
+  test::Diagnosed found =
+      on_lattice ? test::diagnosed(evaluator, lattice, whole(lattice)) : test::diagnosed(evaluator, points);
+  return {std::move(points), std::move(found)};
 }
 
 void compare(const TriangleMesh& mesh, const Sampled& all, double tolerance, Bounded& result) {
   std::vector<double> errors(all.points.size());
   parallel_for(errors.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      errors[i] = std::abs(all.values[i] - test::direct_winding_number(mesh, all.points[i]));
+      errors[i] = std::abs(all.found.values[i] - test::direct_winding_number(mesh, all.points[i]));
     }
   });
   for (std::size_t i = 0; i < errors.size(); ++i) {
-    if (all.on_surface[i] == 0) result.add(errors[i], all.bounds[i], tolerance);  // there the oracle is not defined
+    if (all.found.on_surface[i] != 0) continue;  // there the oracle is not defined
+    result.add(errors[i], all.found.bounds[i], tolerance);
   }
 }
 

@@ -7,29 +7,18 @@
 #include "core/evaluation/winding_number.h"
 #include "core/machine/threads.h"
 #include "core/mesh/weld.h"
+#include "tests/support/diagnosed.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
 
+using test::Diagnosed;
 using test::Random;
 
-struct Diagnosed {
-  std::vector<double> values;
-  std::vector<std::int64_t> crossings, degenerate;
-  std::vector<std::uint8_t> on_surface;
-  std::vector<double> error_bound;
-  Tally tally;
-};
-
-Diagnosed diagnose(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
-  const std::size_t n = queries.size();
-  Diagnosed d{std::vector<double>(n),       std::vector<std::int64_t>(n), std::vector<std::int64_t>(n),
-              std::vector<std::uint8_t>(n), std::vector<double>(n),       {}};
-  const Diagnostics spans{d.crossings, d.degenerate, d.on_surface, d.error_bound};
-  d.tally = WindingNumberEvaluator(mesh).evaluate(queries, d.values, nullptr, &spans);
-  return d;
+Diagnosed diagnosed_at(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
+  return test::diagnosed(WindingNumberEvaluator(mesh), queries);
 }
 
 struct BoundQuality {
@@ -39,22 +28,22 @@ struct BoundQuality {
 };
 
 BoundQuality quality_of_bounds(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
-  const Diagnosed d = diagnose(mesh, queries);
+  const Diagnosed d = diagnosed_at(mesh, queries);
   std::vector<double> ratios(queries.size());
   std::vector<std::uint8_t> violated(queries.size());
   parallel_for(queries.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const __float128 exact = test::direct_winding_number_quad(mesh, queries[i]);
       const double error = static_cast<double>(exact > d.values[i] ? exact - d.values[i] : d.values[i] - exact);
-      violated[i] = !(error <= d.error_bound[i]);  // NaN violates
-      ratios[i] = d.error_bound[i] / std::max(error, std::abs(d.values[i]) * 0x1p-53);
+      violated[i] = !(error <= d.bounds[i]);  // NaN violates
+      ratios[i] = d.bounds[i] / std::max(error, std::abs(d.values[i]) * 0x1p-53);
     }
   });
   BoundQuality quality;
   quality.violations = static_cast<std::uint64_t>(std::count(violated.begin(), violated.end(), 1));
   std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
   quality.median_ratio = ratios[ratios.size() / 2];
-  quality.largest_bound = *std::max_element(d.error_bound.begin(), d.error_bound.end());
+  quality.largest_bound = *std::max_element(d.bounds.begin(), d.bounds.end());
   return quality;
 }
 
@@ -85,7 +74,7 @@ TEST(ErrorBound, HoldsNearEdgesAndOnDegenerateRays) {
     queries.push_back({test::uniform(random, -1, 2), a.y + distance, a.z});
     queries.push_back({test::uniform(random, -1, 2) + 1e-3, a.y, a.z});
   }
-  const Diagnosed d = diagnose(mesh, queries);
+  const Diagnosed d = diagnosed_at(mesh, queries);
   std::vector<Vec3> off_surface;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     if (!d.on_surface[i]) off_surface.push_back(queries[i]);
@@ -102,16 +91,16 @@ TEST(ErrorBound, AThousandthOfItWouldBeViolated) {  // negative control: the com
   int violations = 0;
   for (int i = 0; i < 200; ++i) {
     const Vec3 q = test::uniform_point(random, {{0, 0, 0}, {1, 1, 1}});
-    const Diagnosed d = diagnose(mesh, {q});
+    const Diagnosed d = diagnosed_at(mesh, {q});
     const __float128 error = test::direct_winding_number_quad(mesh, q) - d.values[0];
-    violations += (error < 0 ? -error : error) > d.error_bound[0] / 1000;
+    violations += (error < 0 ? -error : error) > d.bounds[0] / 1000;
   }
   EXPECT_GT(violations, 100);
 }
 
 TEST(ErrorBound, IsZeroForClosedMeshes) {
-  const Diagnosed d = diagnose(test::sphere(8), {{0, 0, 0}, {0.3, 0.2, 0.1}, {2, 0, 0}});
-  EXPECT_EQ(d.error_bound, (std::vector<double>{0, 0, 0}));
+  const Diagnosed d = diagnosed_at(test::sphere(8), {{0, 0, 0}, {0.3, 0.2, 0.1}, {2, 0, 0}});
+  EXPECT_EQ(d.bounds, (std::vector<double>{0, 0, 0}));
   EXPECT_EQ(d.crossings, (std::vector<std::int64_t>{1, 1, 0}));
 }
 
@@ -120,7 +109,7 @@ TEST(Diagnostics, ChangeNoValueAndAddUpToTheTally) {
   const TriangleMesh mesh = test::joined(test::open_box(), test::lattice_soup(random, 12, 2));
   std::vector<Vec3> queries;
   for (int i = 0; i < 343; ++i) queries.push_back({i % 7 * 0.5 - 0.5, i / 7 % 7 * 0.5, i / 49 * 0.5});
-  const Diagnosed d = diagnose(mesh, queries);
+  const Diagnosed d = diagnosed_at(mesh, queries);
   std::vector<double> plain(queries.size());
   WindingNumberEvaluator(mesh).evaluate(queries, plain);
   EXPECT_EQ(d.values, plain);

@@ -7,6 +7,7 @@
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/weld.h"
 #include "tests/property/check.h"
+#include "tests/support/diagnosed.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -60,13 +61,7 @@ std::vector<Vec3> around_origin(const Vec3& d, double distance, Random& random) 
 void expect_twelve_digits(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
   const auto failure = test::check(mesh, queries);
   ASSERT_FALSE(failure) << test::describe(mesh, *failure);
-  const std::size_t n = queries.size();
-  std::vector<double> values(n), bounds(n);
-  std::vector<std::int64_t> crossings(n), degenerate(n);
-  std::vector<std::uint8_t> on_surface(n);
-  const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
-  WindingNumberEvaluator(mesh).evaluate(queries, values, nullptr, &diagnostics);
-  EXPECT_LT(*std::max_element(bounds.begin(), bounds.end()), kPromised);
+  EXPECT_LT(std::ranges::max(test::diagnosed(WindingNumberEvaluator(mesh), queries).bounds), kPromised);
 }
 
 // `below` 0: the queries are around the edge's first vertex; below and above 0.5: around its inside.

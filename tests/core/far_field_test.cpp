@@ -8,6 +8,7 @@
 #include "core/boundary/caps.h"
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/weld.h"
+#include "tests/support/diagnosed.h"
 #include "tests/support/differences.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
@@ -114,15 +115,11 @@ TEST(FarField, BoundsHoldForItsValues) {
   const std::vector<Vec3> points = some_points(20);
   for (const TriangleMesh& mesh : open_meshes()) {
     const WindingNumberEvaluator evaluator = evaluator_of(mesh, 1e-4);
-    std::vector<double> values(points.size()), bounds(points.size());
-    std::vector<std::int64_t> crossings(points.size()), degenerate(points.size());
-    std::vector<std::uint8_t> on_surface(points.size());
-    const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
-    evaluator.evaluate(points, values, nullptr, &diagnostics);
+    const test::Diagnosed found = test::diagnosed(evaluator, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
-      const double error = std::abs(values[i] - test::direct_winding_number(mesh, points[i]));
-      EXPECT_LE(error, bounds[i] + 1e-14);  // the oracle's
-      EXPECT_LE(bounds[i], 1e-4);
+      const double error = std::abs(found.values[i] - test::direct_winding_number(mesh, points[i]));
+      EXPECT_LE(error, found.bounds[i] + 1e-14);  // the oracle's
+      EXPECT_LE(found.bounds[i], 1e-4);
     }
   }
 }

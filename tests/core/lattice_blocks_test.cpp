@@ -20,6 +20,7 @@
 #include "core/far/harmonic_fit.h"
 #include "core/far/lattice_blocks_walk.h"
 #include "core/mesh/weld.h"
+#include "tests/support/diagnosed.h"
 #include "tests/support/differences.h"
 #include "tests/support/shapes.h"
 
@@ -377,15 +378,13 @@ TEST(LatticeBlocksTest, SamplesAreDoneOnce) {
   const TriangleMesh mesh = sieve();
   const Lattice lattice = cube_lattice(12);  // of whole blocks and parts
   const auto count = static_cast<std::size_t>(whole(lattice).size());
-  std::vector<double> values(count), bounds(count);
-  std::vector<std::int64_t> crossings(count), degenerate(count);
-  std::vector<std::uint8_t> on_surface(count);
-  const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
+  test::Diagnosed found(count);
+  const Diagnostics diagnostics = found.spans();
   for (const Summation summation : {Summation::kBlocks, Summation::kFarField, Summation::kCone}) {
     const WindingNumberEvaluator evaluator(mesh, {.summation = summation, .accuracy = {1e-5}});
     for (const Diagnostics* const with : {static_cast<const Diagnostics*>(nullptr), &diagnostics}) {
       std::atomic<std::uint64_t> done = 0;
-      evaluator.evaluate(lattice, whole(lattice), values, &done, with);
+      evaluator.evaluate(lattice, whole(lattice), found.values, &done, with);
       EXPECT_EQ(done, count);
     }
   }

@@ -12,11 +12,14 @@
 #include "core/machine/threads.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/weld.h"
+#include "tests/support/diagnosed.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
+
+using test::Diagnosed;
 
 // --- The sums themselves
 
@@ -162,19 +165,7 @@ TriangleMesh plate(int n) {
   return mesh;
 }
 
-// Values and diagnostics of a block, or of all points.
-struct Evaluated {
-  std::vector<double> values, bounds;
-  std::vector<std::int64_t> crossings, degenerate;
-  std::vector<std::uint8_t> on_surface;
-  Tally tally;
-
-  explicit Evaluated(std::size_t count)
-      : values(count), bounds(count), crossings(count), degenerate(count), on_surface(count) {}
-  Diagnostics diagnostics() { return {crossings, degenerate, on_surface, bounds}; }
-};
-
-Evaluated at_points(const WindingNumberEvaluator& evaluator, const Lattice& lattice) {
+Diagnosed at_points(const WindingNumberEvaluator& evaluator, const Lattice& lattice) {
   std::vector<Vec3> points;
   for (std::int64_t k = lattice.index_min[2]; k <= lattice.index_max(2); ++k) {
     for (std::int64_t j = lattice.index_min[1]; j <= lattice.index_max(1); ++j) {
@@ -183,23 +174,19 @@ Evaluated at_points(const WindingNumberEvaluator& evaluator, const Lattice& latt
       }
     }
   }
-  Evaluated result(points.size());
-  const Diagnostics diagnostics = result.diagnostics();
-  result.tally = evaluator.evaluate(points, result.values, nullptr, &diagnostics);
-  return result;
+  return test::diagnosed(evaluator, points);
 }
 
 // Slabs of a thickness across an axis, with diagnostics and without.
 void expect_slabs(const WindingNumberEvaluator& evaluator, const Lattice& lattice, std::size_t axis,
-                  std::int64_t thickness, const Evaluated& expected) {
+                  std::int64_t thickness, const Diagnosed& expected) {
   Tally tally;
   for (std::int64_t done = 0; done < lattice.counts[axis]; done += thickness) {
     LatticeBlock slab = whole(lattice);
     slab.first[axis] += done;
     slab.counts[axis] = std::min(thickness, lattice.counts[axis] - done);
-    Evaluated with(static_cast<std::size_t>(slab.size()));
-    const Diagnostics diagnostics = with.diagnostics();
-    tally += evaluator.evaluate(lattice, slab, with.values, nullptr, &diagnostics);
+    const Diagnosed with = test::diagnosed(evaluator, lattice, slab);
+    tally += with.tally;
     std::vector<double> without(with.values.size());
     evaluator.evaluate(lattice, slab, without);
     ASSERT_EQ(with.values, without);
@@ -244,7 +231,7 @@ TEST(LatticeSlabs, OfEveryAxisAndThicknessEqualPointsToTheBit) {
     // Rows of one, of a few, of a tile and a rest; lattices flat along each axis.
     const std::array<std::array<std::int64_t, 3>, 4> shapes{{{17, 9, 8}, {1, 12, 11}, {70, 5, 1}, {9, 1, 9}}};
     lattice.counts = shapes[static_cast<std::size_t>(shape++) % shapes.size()];
-    const Evaluated expected = at_points(evaluator, lattice);
+    const Diagnosed expected = at_points(evaluator, lattice);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       for (const std::int64_t thickness : {1, 2, 3, 100}) {
         SCOPED_TRACE(testing::Message() << "mesh " << shape << ", axis " << axis << ", thickness " << thickness);

@@ -15,6 +15,7 @@
 #include "core/machine/floating_point.h"
 #include "core/mesh/weld.h"
 #include "tests/property/check.h"
+#include "tests/support/diagnosed.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -509,14 +510,10 @@ TEST(Magnitude, AtTheLargestNumberEveryValueIsRight) {
   TriangleMesh open = whole;
   open.triangles.resize(7);
   for (const TriangleMesh& mesh : {open, test::moved(test::open_box(), {l, l, l}, {}), test::open_box()}) {
-    std::vector<double> bounds(queries.size());
-    std::vector<std::int64_t> crossings(queries.size()), degenerate(queries.size());
-    std::vector<std::uint8_t> on_surface(queries.size());
-    const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
-    WindingNumberEvaluator(mesh).evaluate(queries, values, nullptr, &diagnostics);
+    const test::Diagnosed found = test::diagnosed(WindingNumberEvaluator(mesh), queries);
     for (std::size_t i = 0; i < queries.size(); ++i) {  // NaN fails both
-      EXPECT_LE(std::abs(values[i]), 1.0) << queries[i].x << " " << queries[i].y << " " << queries[i].z;
-      EXPECT_LT(bounds[i], 1e-12) << queries[i].x << " " << queries[i].y << " " << queries[i].z;
+      EXPECT_LE(std::abs(found.values[i]), 1.0) << queries[i].x << " " << queries[i].y << " " << queries[i].z;
+      EXPECT_LT(found.bounds[i], 1e-12) << queries[i].x << " " << queries[i].y << " " << queries[i].z;
     }
   }
 }

@@ -1,46 +1,27 @@
 // On the surface: the value is that of the perturbed query, flagged, and depends on query and mesh alone.
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <vector>
 
 #include "core/evaluation/winding_number.h"
 #include "core/machine/threads.h"
 #include "core/mesh/weld.h"
 #include "tests/property/check.h"
+#include "tests/support/diagnosed.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
 
+using test::Diagnosed;
 using test::Random;
 
-struct Diagnosed {
-  std::vector<double> values;
-  std::vector<std::int64_t> crossings, degenerate;
-  std::vector<std::uint8_t> on_surface;
-  std::vector<double> error_bounds;
-
-  explicit Diagnosed(std::size_t n) : values(n), crossings(n), degenerate(n), on_surface(n), error_bounds(n) {}
-  [[nodiscard]] Diagnostics spans() { return {crossings, degenerate, on_surface, error_bounds}; }
-  [[nodiscard]] std::size_t on_surface_count() const {
-    return static_cast<std::size_t>(std::count(on_surface.begin(), on_surface.end(), 1));
-  }
-  friend bool operator==(const Diagnosed&, const Diagnosed&) = default;
-};
-
 Diagnosed at_points(const TriangleMesh& mesh, const std::vector<Vec3>& queries, RayEngine engine = RayEngine::kScan) {
-  Diagnosed result(queries.size());
-  const Diagnostics spans = result.spans();
-  WindingNumberEvaluator(mesh, {.ray_engine = engine}).evaluate(queries, result.values, nullptr, &spans);
-  return result;
+  return test::diagnosed(WindingNumberEvaluator(mesh, {.ray_engine = engine}), queries);
 }
 
 Diagnosed on_lattice(const TriangleMesh& mesh, const Lattice& lattice, RayEngine engine = RayEngine::kScan) {
-  Diagnosed result(static_cast<std::size_t>(whole(lattice).size()));
-  const Diagnostics spans = result.spans();
-  WindingNumberEvaluator(mesh, {.ray_engine = engine})
-      .evaluate(lattice, whole(lattice), result.values, nullptr, &spans);
-  return result;
+  return test::diagnosed(WindingNumberEvaluator(mesh, {.ray_engine = engine}), lattice, whole(lattice));
 }
 
 // Half nodes of {0 .. 3}^3 and one more layer: on meshes with corners on the nodes most of them are vertices, middles
@@ -77,7 +58,7 @@ TEST(OnSurface, IsFlaggedAndHasThePerturbedQuerysValue) {
   for (const TriangleMesh& mesh : meshes(random)) {
     const auto failure = test::check(mesh, some);
     EXPECT_FALSE(failure) << test::describe(mesh, *failure);
-    EXPECT_GT(at_points(mesh, queries).on_surface_count(), 100U);
+    EXPECT_GT(at_points(mesh, queries).tally.on_surface, 100U);
   }
 }
 
@@ -145,7 +126,7 @@ TEST(OnSurface, AStepAsideChangesTheFlag) {  // negative control: the flags are 
   Random random(6);
   std::vector<Vec3> queries = points_of(kHalfNodes);
   for (Vec3& q : queries) q = q + Vec3{0.1, 0.013, 0.0017};
-  for (const TriangleMesh& mesh : meshes(random)) EXPECT_LT(at_points(mesh, queries).on_surface_count(), 20U);
+  for (const TriangleMesh& mesh : meshes(random)) EXPECT_LT(at_points(mesh, queries).tally.on_surface, 20U);
 }
 
 }  // namespace

@@ -12,27 +12,14 @@
 #include "core/evaluation/winding_number.h"
 #include "core/machine/floating_point.h"
 #include "core/machine/threads.h"
+#include "tests/support/diagnosed.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
 
-struct Answers {
-  std::vector<double> values, bounds;
-  std::vector<std::int64_t> crossings, ties;
-  std::vector<std::uint8_t> on_surface;
-
-  friend bool operator==(const Answers&, const Answers&) = default;
-};
-
-Answers answers(const WindingNumberEvaluator& evaluator, const std::vector<Vec3>& points) {
-  const std::size_t n = points.size();
-  Answers all{std::vector<double>(n), std::vector<double>(n), std::vector<std::int64_t>(n),
-              std::vector<std::int64_t>(n), std::vector<std::uint8_t>(n)};
-  const Diagnostics diagnostics{all.crossings, all.ties, all.on_surface, all.bounds};
-  evaluator.evaluate(points, all.values, nullptr, &diagnostics);
-  return all;
-}
+using test::Diagnosed;
+using test::diagnosed;
 
 // In and about the unit cubes of a mesh of cells, on a lattice through its corners, and some that are far away or too
 // small to be scaled.
@@ -54,13 +41,13 @@ TEST(PointCrossings, AreTheSameByPassesAndByGrid) {
   for (const TriangleMesh& mesh : {test::random_cells(random, 3), test::lattice_soup(random, 30, 3), soup}) {
     const WindingNumberEvaluator by_passes(mesh, {.ray_engine = RayEngine::kPasses}), by_grid(mesh);
     by_grid.prepare_points();
-    const Answers expected = answers(by_grid, points);
+    const Diagnosed expected = diagnosed(by_grid, points);
     EXPECT_GT(std::ranges::count_if(expected.crossings, [](std::int64_t n) { return n != 0; }), 500);
-    EXPECT_TRUE(answers(by_passes, points) == expected);
-    EXPECT_TRUE(answers(WindingNumberEvaluator(mesh, {.ray_engine = RayEngine::kEmbree}), points) == expected);
+    EXPECT_TRUE(diagnosed(by_passes, points) == expected);
+    EXPECT_TRUE(diagnosed(WindingNumberEvaluator(mesh, {.ray_engine = RayEngine::kEmbree}), points) == expected);
     for (const int threads : {1, 3, 16}) {
       const ThreadLimit limit(threads);
-      EXPECT_TRUE(answers(by_passes, points) == expected) << threads;
+      EXPECT_TRUE(diagnosed(by_passes, points) == expected) << threads;
     }
   }
 }
@@ -75,7 +62,7 @@ TEST(PointCrossings, AreTheSameForManyPointsThatCannotBeScaled) {
   for (const TriangleMesh& mesh : {test::random_cells(random, 3), large}) {
     const WindingNumberEvaluator any(mesh), by_passes(mesh, {.ray_engine = RayEngine::kPasses});
     EXPECT_TRUE(grid_pays_for_points(static_cast<double>(points.size()), double(mesh.triangles.size())));
-    EXPECT_TRUE(answers(any, points) == answers(by_passes, points));
+    EXPECT_TRUE(diagnosed(any, points) == diagnosed(by_passes, points));
   }
   EXPECT_FALSE(grid_pays_for_points(static_cast<double>(points.size()) / 3, double(large.triangles.size())));
 }
@@ -110,7 +97,7 @@ TEST(PointCrossings, AreFoundByAGridWhereTrianglesMeetTooManyRays) {
     const bool gives_up = !crossings_by_pass(scaled, in_scale, rays.size());
     EXPECT_EQ(takes_passes(scaled), !gives_up);
     const WindingNumberEvaluator by_passes(mesh, {.ray_engine = RayEngine::kPasses});
-    EXPECT_TRUE(answers(WindingNumberEvaluator(mesh), points) == answers(by_passes, points));
+    EXPECT_TRUE(diagnosed(WindingNumberEvaluator(mesh), points) == diagnosed(by_passes, points));
     return gives_up;
   };
   EXPECT_TRUE(meets_too_many(needles(random, 4000)));

@@ -8,6 +8,7 @@
 
 #include "core/evaluation/winding_number.h"
 #include "core/machine/floating_point.h"
+#include "tests/support/diagnosed.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/exact_predicates.h"
 
@@ -18,17 +19,13 @@ using Quad = __float128;
 
 std::vector<Answer> evaluate(const TriangleMesh& mesh, RayEngine engine, Summation summation,
                              const std::vector<Vec3>& queries, bool& closed) {
-  const std::size_t n = queries.size();
-  std::vector<double> values(n), bounds(n);
-  std::vector<std::int64_t> crossings(n), degenerate(n);
-  std::vector<std::uint8_t> on_surface(n);
-  const Diagnostics diagnostics{crossings, degenerate, on_surface, bounds};
   const WindingNumberEvaluator evaluator(mesh, {.ray_engine = engine, .summation = summation});
   evaluator.prepare_points();
-  evaluator.evaluate(queries, values, nullptr, &diagnostics);
+  const Diagnosed found = diagnosed(evaluator, queries);
   closed = evaluator.exterior_edges() == 0;
   std::vector<Answer> answers;
-  for (std::size_t i = 0; i < n; ++i) answers.push_back({values[i], degenerate[i], on_surface[i] != 0, bounds[i]});
+  for (std::size_t i = 0; i < queries.size(); ++i)
+    answers.push_back({found.values[i], found.degenerate[i], found.on_surface[i] != 0, found.bounds[i]});
   return answers;
 }
 

@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <climits>
 #include <csignal>
 #include <filesystem>
@@ -18,6 +17,7 @@
 #include "io/files/spool_file.h"
 #include "io/files/temporary_file.h"
 #include "tests/support/output_checks.h"
+#include "tests/support/pipe.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/text_files.h"
 
@@ -26,6 +26,7 @@ namespace {
 
 using test::output_error_of;
 using test::read_text;
+using test::received_through_pipe;
 using test::TemporaryDirectory;
 using test::write_text;
 
@@ -239,53 +240,35 @@ TEST(OutputFile, WritesToAFifoWithoutReplacingIt) {
 }
 
 TEST(OutputFile, WritesToANamedDescriptor) {
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);
-  {
-    OutputFile output("/dev/fd/" + std::to_string(ends[1]));
-    write(output, "hello");
-    output.commit();
-  }
-  close(ends[1]);
-  char text[6] = {};
-  EXPECT_EQ(read(ends[0], text, sizeof text), 5);
-  EXPECT_STREQ(text, "hello");
-  close(ends[0]);
+  EXPECT_EQ(received_through_pipe([](const std::string& path) {
+              OutputFile output(path);
+              write(output, "hello");
+              output.commit();
+            }),
+            "hello");
 }
 
 TEST(OutputFile, SeeksOnAPipeToWhereItIsAndNowhereElse) {
-  std::array<int, 2> ends{};
-  ASSERT_EQ(pipe(ends.data()), 0);
-  {
-    OutputFile output("/dev/fd/" + std::to_string(ends[1]));
-    write(output, "ab");
-    output.seek(2);
-    write(output, "c");
-    output.flush();
-    output.seek(3);
-    EXPECT_THROW(output.seek(1), OutputError);
-  }
-  close(ends[1]);
-  char text[4] = {};
-  EXPECT_EQ(read(ends[0], text, sizeof text), 3);
-  EXPECT_STREQ(text, "abc");
-  close(ends[0]);
+  EXPECT_EQ(received_through_pipe([](const std::string& path) {
+              OutputFile output(path);
+              write(output, "ab");
+              output.seek(2);
+              write(output, "c");
+              output.flush();
+              output.seek(3);
+              EXPECT_THROW(output.seek(1), OutputError);
+            }),
+            "abc");
 }
 
 // The link there reads "pipe:[...]".
 TEST(OutputFile, WritesToAPipeOfAnyProcess) {
-  std::array<int, 2> ends{};
-  ASSERT_EQ(pipe(ends.data()), 0);
-  {
-    OutputFile output("/proc/" + std::to_string(getpid()) + "/fd/" + std::to_string(ends[1]));
-    output.write("abc", 3);
-    output.commit();
-  }
-  ::close(ends[1]);
-  std::array<char, 8> bytes{};
-  EXPECT_EQ(read(ends[0], bytes.data(), bytes.size()), 3);
-  EXPECT_EQ(std::string(bytes.data()), "abc");
-  ::close(ends[0]);
+  EXPECT_EQ(received_through_pipe([](const std::string& path) {
+              OutputFile output("/proc/" + std::to_string(getpid()) + path.substr(path.find("/fd/")));
+              write(output, "abc");
+              output.commit();
+            }),
+            "abc");
 }
 
 // `raycone -o /dev/stdout >> log` must append to the log, not replace or truncate it.
@@ -353,26 +336,14 @@ TEST(OutputFile, ReportsAClosedPipeWhereTheSignalIsIgnored) {
 }
 
 TEST(OutputFile, WaitsForAReaderWhereThePipeIsNonBlocking) {
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);
-  ASSERT_EQ(fcntl(ends[1], F_SETFL, O_NONBLOCK), 0);
   const std::string much(std::size_t{1} << 20, 'x');  // more than a pipe holds
-  std::size_t received = 0;
-  std::thread reader([&] {
-    std::vector<char> bytes(65536);
-    for (ssize_t count; (count = read(ends[0], bytes.data(), bytes.size())) > 0;) {
-      received += static_cast<std::size_t>(count);
-    }
-  });
-  {
-    OutputFile output("/dev/fd/" + std::to_string(ends[1]));
+  const std::string received = received_through_pipe([&](const std::string& path) {
+    ASSERT_EQ(fcntl(std::stoi(path.substr(path.rfind('/') + 1)), F_SETFL, O_NONBLOCK), 0);
+    OutputFile output(path);
     write(output, much);
     output.commit();
-  }
-  close(ends[1]);
-  reader.join();
-  close(ends[0]);
-  EXPECT_EQ(received, much.size());
+  });
+  EXPECT_EQ(received.size(), much.size());
 }
 
 TEST(OutputFile, RefusesADirectory) {

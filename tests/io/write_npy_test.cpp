@@ -1,15 +1,14 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstring>
 #include <random>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "io/fields/field_writer.h"
 #include "tests/support/output_checks.h"
+#include "tests/support/pipe.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/text_files.h"
 
@@ -155,20 +154,7 @@ std::string points_npy(const std::vector<double>& values, bool announce) {
 }
 
 std::string points_npy_through_pipe(const std::vector<double>& values, bool announce) {
-  int ends[2];
-  EXPECT_EQ(pipe(ends), 0);
-  std::string received;
-  std::thread reader([&] {
-    std::vector<char> bytes(65536);
-    for (ssize_t count; (count = read(ends[0], bytes.data(), bytes.size())) > 0;) {
-      received.append(bytes.data(), static_cast<std::size_t>(count));
-    }
-  });
-  write_points("/dev/fd/" + std::to_string(ends[1]), values, announce);
-  close(ends[1]);
-  reader.join();
-  close(ends[0]);
-  return received;
+  return test::received_through_pipe([&](const std::string& path) { write_points(path, values, announce); });
 }
 
 TEST(WriteNpy, PointsAreOneAxisOfDoubles) {

@@ -1,6 +1,5 @@
 // ZIP archives, and the arrays of NumPy in them.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <string>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "io/fields/field_writer.h"
 #include "io/files/zip_writer.h"
 #include "tests/support/output_checks.h"
+#include "tests/support/pipe.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/text_files.h"
 
@@ -110,14 +110,7 @@ TEST(WriteNpz, NumpyLoadsPointsAndFields) {
 TEST(WriteNpz, IsTheSameOnAPipe) {
   const TemporaryDirectory directory;
   write_npz(directory / "out.npz");
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);  // holds 64 KiB
-  write_npz("/dev/fd/" + std::to_string(ends[1]));
-  close(ends[1]);
-  std::string received(65536, '\0');
-  received.resize(static_cast<std::size_t>(read(ends[0], received.data(), received.size())));
-  close(ends[0]);
-  EXPECT_EQ(received, read_text(directory / "out.npz"));
+  EXPECT_EQ(test::received_through_pipe(write_npz), read_text(directory / "out.npz"));
 }
 
 }  // namespace

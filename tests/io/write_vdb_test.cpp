@@ -17,6 +17,7 @@
 #include "io/vdb/read_vdb.h"
 #include "tests/io/vdb_field.h"
 #include "tests/support/output_checks.h"
+#include "tests/support/pipe.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/text_files.h"
 #include "tests/support/vdb_files.h"
@@ -222,20 +223,8 @@ TEST(WriteVdb, IdentifierFollowsTheContent) {
 TEST(WriteVdb, IsTheSameThroughAPipe) {
   const TemporaryDirectory directory;
   write_vdb(directory / "file", ball_field());
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);
-  std::string received;
-  std::thread reader([&] {
-    std::vector<char> bytes(65536);
-    for (ssize_t count; (count = read(ends[0], bytes.data(), bytes.size())) > 0;) {
-      received.append(bytes.data(), static_cast<std::size_t>(count));
-    }
-  });
-  write_vdb("/dev/fd/" + std::to_string(ends[1]), ball_field());
-  close(ends[1]);
-  reader.join();
-  close(ends[0]);
-  EXPECT_EQ(received, read_text(directory / "file"));
+  const auto write = [](const std::string& path) { write_vdb(path, ball_field()); };
+  EXPECT_EQ(test::received_through_pipe(write), read_text(directory / "file"));
 }
 
 TEST(WriteVdb, ReportsAFullDisk) {

@@ -1,5 +1,4 @@
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <string>
 #include <vector>
@@ -7,6 +6,7 @@
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
 #include "tests/support/output_checks.h"
+#include "tests/support/pipe.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/text_files.h"
 
@@ -111,14 +111,8 @@ TEST(WriteVti, DoublesOnRequest) {
 TEST(WriteVti, IsTheSameOnAPipe) {
   const TemporaryDirectory directory;
   write_vti(directory / "out.vti", described_with_flags());
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);  // holds 64 KiB
-  write_vti("/dev/fd/" + std::to_string(ends[1]), described_with_flags());
-  close(ends[1]);
-  std::string received(65536, '\0');
-  received.resize(static_cast<std::size_t>(read(ends[0], received.data(), received.size())));
-  close(ends[0]);
-  EXPECT_EQ(received, read_text(directory / "out.vti"));
+  const auto write = [](const std::string& path) { write_vti(path, described_with_flags()); };
+  EXPECT_EQ(test::received_through_pipe(write), read_text(directory / "out.vti"));
 }
 
 TEST(WriteVti, RefusesIndicesThatVtkCannotHold) {

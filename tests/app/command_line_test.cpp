@@ -25,9 +25,7 @@ class CommandLine : public testing::Test {
 
   // Runs `raycone lattice mesh.obj -o out.csv` with `more` behind it.
   CommandResult lattice(const Arguments& more) const {
-    Arguments arguments{"lattice", mesh_, "-o", csv_};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_raycone(arguments);
+    return run_raycone(with_more({"lattice", mesh_, "-o", csv_}, more));
   }
 
   TemporaryDirectory dir_;

@@ -83,9 +83,8 @@ TEST_F(DiagnosticsOption, BytesDependNotOnThreads) {
                                              {"points", soup_, points_, "-o", "-", "--format", "npy"}}) {
     std::set<std::string> contents;
     for (const std::string threads : {"1", "2", "7"}) {
-      std::vector<std::string> arguments = run;
-      arguments.insert(arguments.end(), {"--diagnostics", "--verify", "10", "--threads", threads});
-      const CommandResult result = run_raycone(arguments);
+      const CommandResult result =
+          run_raycone(with_more(run, {"--diagnostics", "--verify", "10", "--threads", threads}));
       EXPECT_EQ(result.status, 0) << result.err;
       contents.insert(result.out);
     }
@@ -112,11 +111,8 @@ struct Compared {
 
 Compared compare_grids_with_csv(const std::string& mesh, const std::string& path) {
   const std::vector<std::string> more{"--resolution", "12", "--diagnostics"};
-  std::vector<std::string> to_vdb{"lattice", mesh, "-o", path}, to_csv{"lattice", mesh, "-o", "-"};
-  to_vdb.insert(to_vdb.end(), more.begin(), more.end());
-  to_csv.insert(to_csv.end(), more.begin(), more.end());
-  EXPECT_EQ(run_raycone(to_vdb).status, 0);
-  std::istringstream csv(run_raycone(to_csv).out);
+  EXPECT_EQ(run_raycone(with_more({"lattice", mesh, "-o", path}, more)).status, 0);
+  std::istringstream csv(run_raycone(with_more({"lattice", mesh, "-o", "-"}, more)).out);
   const VdbGridPtr crossings = read_vdb_grid(path, "crossings");
   const VdbGridPtr degenerate = read_vdb_grid(path, "degenerate");
   const VdbGridPtr on_surface = read_vdb_grid(path, "on_surface", VdbType::kBool);

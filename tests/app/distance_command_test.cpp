@@ -62,9 +62,7 @@ class SdfField : public testing::Test {
 
   CommandResult lattice(const std::string& mesh, const std::string& output,
                         const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"lattice", mesh, "-o", output, "--quiet"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_raycone(arguments);
+    return run_raycone(with_more({"lattice", mesh, "-o", output, "--quiet"}, more));
   }
 
   TemporaryDirectory dir_;
@@ -144,9 +142,7 @@ TEST_F(SdfField, HasUnitGradientOnSmoothClosedMeshes) {
 
 TEST_F(SdfField, PadsTheBoxByTheBandAndOneVoxel) {
   const auto samples = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> options{"--field", "sdf", "--resolution", "11"};
-    options.insert(options.end(), more.begin(), more.end());
-    const std::string csv = lattice(cube_, "-", options).out;
+    const std::string csv = lattice(cube_, "-", with_more({"--field", "sdf", "--resolution", "11"}, more)).out;
     return std::ranges::count(csv, '\n') - 1;
   };
   EXPECT_EQ(samples({}), 19 * 19 * 19);

@@ -32,9 +32,7 @@ class Engines : public testing::Test {
     for (const char* const engine : {"auto", "scan", "embree"}) {
       for (const NamedLevel& level : kLevels) {
         if (!is_available(level.level)) continue;
-        std::vector<std::string> words = command;
-        words.insert(words.end(), {"--engine", engine, "--simd", level.name});
-        const CommandResult result = run_raycone(words);
+        const CommandResult result = run_raycone(with_more(command, {"--engine", engine, "--simd", level.name}));
         EXPECT_EQ(result.status, 0) << result.err;
         EXPECT_TRUE(result.out == expected.out) << engine << ' ' << level.name;
       }
@@ -92,8 +90,7 @@ TEST_F(Engines, WithoutEmbreeOnlyThatOneIsRefused) {
   const CommandOptions options{.environment = {{"LD_LIBRARY_PATH", directory}}};
   const std::vector<std::string> words{"lattice", cube_, "-o", "-", "--resolution", "3"};
   EXPECT_EQ(run_raycone(words, options).status, 0);
-  std::vector<std::string> by_embree = words;
-  by_embree.insert(by_embree.end(), {"--engine", "embree"});
+  const std::vector<std::string> by_embree = with_more(words, {"--engine", "embree"});
   EXPECT_EQ(run_raycone(by_embree).status, 0);
   const CommandResult refused = run_raycone(by_embree, options);
   EXPECT_EQ(refused.status, 4);

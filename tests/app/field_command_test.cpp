@@ -45,9 +45,7 @@ class FieldOption : public testing::Test {
   }
 
   CommandResult run(const std::string& mesh, const std::string& output, const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"lattice", mesh, "-o", output, "--resolution", "13", "--padding", "2v"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_raycone(arguments);
+    return run_raycone(with_more({"lattice", mesh, "-o", output, "--resolution", "13", "--padding", "2v"}, more));
   }
 
   TemporaryDirectory dir_;

@@ -146,9 +146,7 @@ TEST_F(InfoGate, SelfIntersectionsAreCountedWhereAskedFor) {
   EXPECT_FALSE(nlohmann::json::parse(run_raycone({"info", crossing_, "--json"}).out).contains("self_intersections"));
   for (const std::vector<std::string>& option :
        {std::vector<std::string>{"--intersections"}, {"--require", "embedded"}}) {
-    std::vector<std::string> arguments{"info", crossing_, "--json"};
-    arguments.insert(arguments.end(), option.begin(), option.end());
-    const CommandResult result = run_raycone(arguments);
+    const CommandResult result = run_raycone(with_more({"info", crossing_, "--json"}, option));
     EXPECT_EQ(nlohmann::json::parse(result.out)["self_intersections"], 1) << result.err;
   }
   EXPECT_NE(run_raycone({"info", crossing_, "--intersections"}).out.find("  self-intersections   1 pair of faces\n"),

@@ -80,9 +80,7 @@ TEST_F(Interruption, SignalsIgnoredByTheCallerStayIgnored) {
 }
 
 TEST_F(Interruption, ByTimeoutCleansUpAndEndsWithStatus4) {
-  std::vector<std::string> arguments = long_run_;
-  arguments.insert(arguments.end(), {"--timeout", "0.3"});
-  const CommandResult result = run_raycone(arguments);
+  const CommandResult result = run_raycone(with_more(long_run_, {"--timeout", "0.3"}));
   EXPECT_EQ(result.status, 4);
   EXPECT_EQ(result.err, "raycone: " + mesh_ + ": not finished within 0.3 seconds (--timeout)\n");
   expect_only_what_was_there();

@@ -190,9 +190,8 @@ TEST_F(LatticeCommand, SamplesTheLatticeOfAnotherGrid) {
 
 TEST_F(LatticeCommand, DoubleWidensTheValues) {
   const auto size = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments{"lattice", mesh_, "-o", "-", "--format", "npy", "--resolution", "10"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_raycone(arguments).out.size();
+    return run_raycone(with_more({"lattice", mesh_, "-o", "-", "--format", "npy", "--resolution", "10"}, more))
+        .out.size();
   };
   EXPECT_EQ(size({"--double"}) - size({}), 4U * 1000U);
 }
@@ -294,9 +293,7 @@ TEST_F(LatticeCommand, NamesTheMeshWhoseLatticeIsBeyondNumbers) {
     const std::string out = dir_ / (std::string(command) == "lattice" ? "out.npy" : "out.ply");
     for (const std::vector<std::string>& sampling :
          {std::vector<std::string>{"--resolution", "4000000"}, {"--voxel-size", "1e-300"}}) {
-      std::vector<std::string> words{command, mesh_, "-o", out};
-      words.insert(words.end(), sampling.begin(), sampling.end());
-      const CommandResult result = run_raycone(words);
+      const CommandResult result = run_raycone(with_more({command, mesh_, "-o", out}, sampling));
       EXPECT_EQ(result.status, 4) << result.err;
       EXPECT_EQ(result.err.rfind("raycone: " + mesh_ + ": the lattice would ", 0), 0U) << result.err;
       EXPECT_NE(result.err.find(", expected "), std::string::npos) << result.err;

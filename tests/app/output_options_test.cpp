@@ -37,9 +37,7 @@ class GridOptions : public testing::Test {
   GridOptions() { write_text(mesh_, triangle_soup(20)); }
 
   CommandResult lattice(const std::string& output, const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"lattice", mesh_, "-o", output, "--quiet", "--resolution", "16"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_raycone(arguments);
+    return run_raycone(with_more({"lattice", mesh_, "-o", output, "--quiet", "--resolution", "16"}, more));
   }
   VdbGridPtr written(const std::string& name, const std::vector<std::string>& options) const {
     const CommandResult result = lattice(dir_ / "out.vdb", options);

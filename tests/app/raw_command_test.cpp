@@ -25,9 +25,7 @@ class RawOption : public testing::Test {
   RawOption() { write_text(mesh_, kCube); }
 
   CommandResult raw(const std::string& input, const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"points", mesh_, "-", "--quiet", "--raw"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_raycone(arguments, {.input = input});
+    return run_raycone(with_more({"points", mesh_, "-", "--quiet", "--raw"}, more), {.input = input});
   }
 
   TemporaryDirectory dir_;

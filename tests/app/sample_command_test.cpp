@@ -20,14 +20,10 @@ class SampleOption : public testing::Test {
   SampleOption() { write_text(mesh_, kCube); }
 
   CommandResult sample(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"points", mesh_, "--quiet", "--sample"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_raycone(arguments);
+    return run_raycone(with_more({"points", mesh_, "--quiet", "--sample"}, more));
   }
   std::string npz(const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"uniform=500,near=500:0.01", "-o", dir_ / "out.npz"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    EXPECT_EQ(sample(arguments).status, 0);
+    EXPECT_EQ(sample(with_more({"uniform=500,near=500:0.01", "-o", dir_ / "out.npz"}, more)).status, 0);
     return read_text(dir_ / "out.npz");
   }
 
@@ -96,9 +92,7 @@ TEST_F(SampleOption, ValuesAreThoseOfThePoints) {
 
 TEST_F(SampleOption, TheBoxIsPaddedOrAnother) {
   const auto lies_in = [&](const std::vector<std::string>& more, double lower, double upper) {
-    std::vector<std::string> arguments{"uniform=3000", "--field", "winding"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    std::istringstream lines(sample(arguments).out);
+    std::istringstream lines(sample(with_more({"uniform=3000", "--field", "winding"}, more)).out);
     std::string line;
     std::getline(lines, line);
     double least = 1e9, most = -1e9;

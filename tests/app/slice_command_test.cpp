@@ -88,11 +88,9 @@ TEST_F(Slice, LiesWhereItIsAskedFor) {
 
 TEST_F(Slice, AlongAnObliquePlaneIsThatAlongTheAxisIfTheyAreTheSame) {
   const std::vector<std::string> common{"--bounds", "0,0,0,2,1,1", "--size", "16", "--values", values_};
-  std::vector<std::string> axis = common, oblique = common;
-  oblique.insert(oblique.end(), {"--normal", "0,0,1", "--up", "0,1,0"});
-  ASSERT_EQ(slice(axis).status, 0);
+  ASSERT_EQ(slice(common).status, 0);
   const std::vector<double> expected = values(8, 16);
-  const CommandResult result = slice(oblique);
+  const CommandResult result = slice(with_more(common, {"--normal", "0,0,1", "--up", "0,1,0"}));
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(values(8, 16), expected);
 }
@@ -172,9 +170,7 @@ TEST_F(Slice, HasDistancesAtTheSamplesOfItsLattice) {
 TEST_F(Slice, ShowsAndWritesTheFieldAskedFor) {
   const std::vector<std::string> common{"--bounds", "-1,0,0,3,2,1", "--size", "4", "--at", "0.5", "--values", values_};
   const auto lower_row = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words = common;
-    words.insert(words.end(), more.begin(), more.end());
-    const CommandResult result = slice(words);
+    const CommandResult result = slice(with_more(common, more));
     EXPECT_EQ(result.status, 0) << result.err;
     const std::vector<double> two_rows = values(2, 4);
     return std::vector<double>(two_rows.begin() + 4, two_rows.end());
@@ -194,10 +190,7 @@ TEST_F(Slice, ShowsLabelsOfParts) {
   write_text(other, moved);  // from x = 0 to 2
   const std::vector<std::string> common{other, "--bounds", "-1,0,0,3,2,1", "--size", "4", "--values", values_};
   const auto lower_row = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words = common;
-    words.insert(words.end(), {"--field", "label"});
-    words.insert(words.end(), more.begin(), more.end());
-    const CommandResult result = slice(words);
+    const CommandResult result = slice(with_more(with_more(common, {"--field", "label"}), more));
     EXPECT_EQ(result.status, 0) << result.err;
     const std::vector<double> two_rows = values(2, 4);
     return std::vector<double>(two_rows.begin() + 4, two_rows.end());
@@ -247,12 +240,9 @@ TEST_F(Slice, HasAxesAndLegendWithinItsSizeAndTheSamplesBesideThem) {
 TEST_F(Slice, IsTheSameForAnyNumberOfThreads) {
   const std::string teapot = RAYCONE_DATA "/meshes/teapot.obj";
   const std::vector<std::string> words{"slice", teapot, "-o", "-", "--size", "90", "--normal", "1,2,3", "--quiet"};
-  std::vector<std::string> one = words, two = words;
-  one.insert(one.end(), {"--threads", "1"});
-  two.insert(two.end(), {"--threads", "2"});
-  const CommandResult first = run_raycone(one);
-  EXPECT_EQ(size_of_png(first.out).width, 90U);
-  EXPECT_TRUE(first.out == run_raycone(two).out);
+  const CommandResult one = run_raycone(with_more(words, {"--threads", "1"}));
+  EXPECT_EQ(size_of_png(one.out).width, 90U);
+  EXPECT_TRUE(one.out == run_raycone(with_more(words, {"--threads", "2"})).out);
 }
 
 TEST_F(Slice, RefusesWhatItCannotDo) {
@@ -301,9 +291,7 @@ TEST_F(Slice, RefusesPicturesThatCannotFitWithTheNumber) {
   const std::string soup = dir_ / "soup.obj";
   write_text(soup, triangle_soup(200));
   const auto limited = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"slice", soup, "-o", picture_, "--no-legend", "--threads", "1"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_raycone(words);
+    return run_raycone(with_more({"slice", soup, "-o", picture_, "--no-legend", "--threads", "1"}, more));
   };
   const CommandResult lattice = limited({"--size", "4000", "--memory-limit", "380M"});
   EXPECT_EQ(lattice.status, 4);

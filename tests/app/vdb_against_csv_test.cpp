@@ -44,9 +44,7 @@ void compare(const std::string& mesh, const std::vector<std::string>& options) {
   const std::string path = dir / "mesh.obj";
   std::ofstream(path) << mesh;
   for (const std::string name : {"out.csv", "out.vdb"}) {
-    std::vector<std::string> arguments{"lattice", path, "-o", dir / name};
-    arguments.insert(arguments.end(), options.begin(), options.end());
-    ASSERT_EQ(run_raycone(arguments).status, 0);
+    ASSERT_EQ(run_raycone(with_more({"lattice", path, "-o", dir / name}, options)).status, 0);
   }
   const std::vector<CsvSample> samples = read_csv(dir / "out.csv");
   const VdbGridPtr grid = read_vdb_grid(dir / "out.vdb", "winding");

@@ -163,8 +163,11 @@ CommandResult run_raycone(const std::vector<std::string>& arguments, const Comma
 
 std::vector<std::string> raycone_command(const std::vector<std::string>& arguments) {
   const char* const other = std::getenv("RAYCONE_TEST_EXECUTABLE");
-  std::vector<std::string> words{other ? other : RAYCONE_EXECUTABLE};
-  words.insert(words.end(), arguments.begin(), arguments.end());
+  return with_more({other ? other : RAYCONE_EXECUTABLE}, arguments);
+}
+
+std::vector<std::string> with_more(std::vector<std::string> words, const std::vector<std::string>& more) {
+  words.insert(words.end(), more.begin(), more.end());
   return words;
 }
 

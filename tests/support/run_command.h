@@ -70,4 +70,7 @@ class Command {
 [[nodiscard]] CommandResult run_raycone(const std::vector<std::string>& arguments, const CommandOptions& options = {});
 [[nodiscard]] std::vector<std::string> raycone_command(const std::vector<std::string>& arguments);
 
+// `words`, and `more` behind them.
+[[nodiscard]] std::vector<std::string> with_more(std::vector<std::string> words, const std::vector<std::string>& more);
+
 }  // namespace raycone::test

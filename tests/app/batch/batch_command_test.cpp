@@ -84,9 +84,7 @@ TEST_F(Batch, PoisonIsContainedAndTriedAgainWhereItsCauseMayBeGone) {
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);  // a reader without end
   put("z.obj");
   const auto batch = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> words{"batch", meshes_, pipe, "--out-dir", out_, "--voxel-size", "1"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_raycone(words);
+    return run_raycone(with_more({"batch", meshes_, pipe, "--out-dir", out_, "--voxel-size", "1"}, more));
   };
   const CommandResult result = batch({"--timeout", "10", "--memory-limit", "8G"});
   EXPECT_EQ(result.status, 5);
@@ -102,9 +100,7 @@ TEST_F(Batch, PoisonIsContainedAndTriedAgainWhereItsCauseMayBeGone) {
   EXPECT_EQ(outputs_in(out_).size(), 2U) << "no debris of the worker that was killed";
 
   const auto planned = [&batch](const char* timeout, const char* memory, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words{"--timeout", timeout, "--memory-limit", memory, "--dry-run"};
-    words.insert(words.end(), more.begin(), more.end());
-    return batch(words).out;
+    return batch(with_more({"--timeout", timeout, "--memory-limit", memory, "--dry-run"}, more)).out;
   };
   EXPECT_EQ(planned("10", "8G"), "");
   EXPECT_EQ(planned("12", "8G"), pipe + "\ttime limit changed\n");
@@ -269,9 +265,7 @@ TEST_F(Batch, ListsComeFromFilesAndStandardInput) {
   const std::string a = put("a b.obj");
   const std::string b = put("c.obj");
   const auto with_list = [this](const std::vector<std::string>& words, const std::string& input) {
-    std::vector<std::string> all{"batch", "--out-dir", out_, "--resolution", "8"};
-    all.insert(all.end(), words.begin(), words.end());
-    Command command(raycone_command(all));
+    Command command(raycone_command(with_more({"batch", "--out-dir", out_, "--resolution", "8"}, words)));
     command.write(input);
     command.close_input();
     return command.wait().status;

@@ -38,9 +38,7 @@ class Batch : public testing::Test {
   }
   [[nodiscard]] std::vector<std::string> arguments_into(const std::string& out,
                                                         const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{"batch", meshes_, "--out-dir", out, "--resolution", "8", "--format", "npy"};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+    return with_more({"batch", meshes_, "--out-dir", out, "--resolution", "8", "--format", "npy"}, more);
   }
 
   [[nodiscard]] CommandResult run(const std::vector<std::string>& more = {}, const CommandOptions& options = {}) const {

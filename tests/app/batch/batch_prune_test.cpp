@@ -16,10 +16,7 @@ class BatchPrune : public Batch {
   [[nodiscard]] Statuses kept() const { return statuses(rows()); }
   [[nodiscard]] CommandResult run_on(const std::vector<std::string>& operands,
                                      const std::vector<std::string>& more = {"--prune"}) const {
-    std::vector<std::string> words{"batch", "--out-dir", out_, "--resolution", "8"};
-    words.insert(words.end(), operands.begin(), operands.end());
-    words.insert(words.end(), more.begin(), more.end());
-    return run_raycone(words);
+    return run_raycone(with_more({"batch", "--out-dir", out_, "--resolution", "8"}, with_more(operands, more)));
   }
 };
 

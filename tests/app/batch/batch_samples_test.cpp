@@ -24,17 +24,14 @@ class BatchSamples : public Batch {
 
   // Unlike that of lattices, without --resolution.
   [[nodiscard]] CommandResult sample(const std::vector<std::string>& more = {}, const std::string& spec = kSpec) const {
-    std::vector<std::string> words{"batch", meshes_, "--out-dir", out_, "--sample", spec};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_raycone(words);
+    return run_raycone(with_more({"batch", meshes_, "--out-dir", out_, "--sample", spec}, more));
   }
   // What `raycone points` writes for the mesh of this name.
   [[nodiscard]] std::string alone(const std::string& mesh, const std::string& format,
                                   const std::vector<std::string>& more = {}) const {
     const std::string output = dir_ / "alone." + format;
-    std::vector<std::string> words{"points", meshes_ + '/' + mesh, "--sample", kSpec, "-o", output};
-    words.insert(words.end(), more.begin(), more.end());
-    EXPECT_EQ(run_raycone(words).status, 0);
+    EXPECT_EQ(run_raycone(with_more({"points", meshes_ + '/' + mesh, "--sample", kSpec, "-o", output}, more)).status,
+              0);
     return read_text(output);
   }
   [[nodiscard]] std::size_t listed(const std::vector<std::string>& more, const std::string& spec = kSpec) const {

@@ -49,10 +49,8 @@ class BatchStale : public Batch {
  protected:
   [[nodiscard]] static std::vector<std::string> words(const std::vector<std::string>& operands, const std::string& out,
                                                       const std::vector<std::string>& more = {}) {
-    std::vector<std::string> all{"batch", "--out-dir", out, "--resolution", "8", "--format", "csv", "--quiet"};
-    all.insert(all.end(), operands.begin(), operands.end());
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+    const std::vector<std::string> operands_and_more = with_more(operands, more);
+    return with_more({"batch", "--out-dir", out, "--resolution", "8", "--format", "csv", "--quiet"}, operands_and_more);
   }
   [[nodiscard]] CommandResult run_on(const std::vector<std::string>& operands,
                                      const std::vector<std::string>& more = {}) const {
@@ -126,9 +124,8 @@ TEST_F(BatchStale, GridsAreKnownByWhatTheyHold) {
     ASSERT_EQ(run_raycone({"lattice", mesh, "-o", grid, "--resolution", resolution, "--quiet"}).status, 0);
   };
   const auto like = [&](const std::string& path, const std::vector<std::string>& more) {
-    std::vector<std::string> all{"batch", mesh, "--out-dir", out_, "--format", "csv", "--quiet", "--like", path};
-    all.insert(all.end(), more.begin(), more.end());
-    return run_raycone(all);
+    return run_raycone(
+        with_more({"batch", mesh, "--out-dir", out_, "--format", "csv", "--quiet", "--like", path}, more));
   };
   make_grid("4");
   ASSERT_EQ(like(grid, {}).status, 0);

@@ -16,16 +16,9 @@ class Makefile : public Batch {
  protected:
   [[nodiscard]] std::vector<std::string> make(const std::string& resolution,
                                               const std::vector<std::string>& more = {}) {
-    std::vector<std::string> words{"/usr/bin/make",
-                                   "-j2",
-                                   "-f",
-                                   RAYCONE_DATA "/../app/make/Makefile",
-                                   "MESHES=" + meshes_,
-                                   "FIELDS=" + out_,
-                                   "OPTIONS=--resolution " + resolution,
-                                   "RAYCONE=" + raycone_command({}).front()};
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
+    return with_more({"/usr/bin/make", "-j2", "-f", RAYCONE_DATA "/../app/make/Makefile", "MESHES=" + meshes_,
+                      "FIELDS=" + out_, "OPTIONS=--resolution " + resolution, "RAYCONE=" + raycone_command({}).front()},
+                     more);
   }
 
   void SetUp() override {

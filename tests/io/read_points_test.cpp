@@ -61,6 +61,7 @@ class ReadPoints : public testing::Test {
 };
 
 const std::vector<Vec3> kTwo{{1, 2, 3}, {-4, 0.5, 6e-3}};
+const ReadPointsOptions kFromTheSecondOn{.columns = {{2, 3, 4}}, .raw = {}};
 
 // --- Text -----------------------------------------------------------------------------------------------------------
 
@@ -110,9 +111,7 @@ TEST_F(ReadPoints, DelimiterIsThatOfTheRows) {
   EXPECT_EQ(read("x;y;z;note\n1;2;3;a, b\n-4;.5;6e-3;\n"), kTwo);
   EXPECT_EQ(read("1,2,3,a;b\n-4,.5,6e-3,c\td\n"), kTwo);
   EXPECT_EQ(read("z,y,x\n3 2 1\n6e-3 .5 -4\n"), kTwo);
-  ReadPointsOptions options;
-  options.columns = {2, 3, 4};
-  EXPECT_EQ(read("5;1;2;3;a,7,8,9\n6;-4;.5;6e-3;\n", options), kTwo);
+  EXPECT_EQ(read("5;1;2;3;a,7,8,9\n6;-4;.5;6e-3;\n", kFromTheSecondOn), kTwo);
   // No other character decides that what is not a number is one.
   for (const char* const line : {"10 5\t-4\t1.25", "10,5 -4,0 1,25", "10,5\t-4,0\t1,25", "1,5;2;3", "1\t2,5\t3"}) {
     EXPECT_NE(error_of(std::string(line) + "\n").find("expected a"), std::string::npos) << line;
@@ -159,9 +158,7 @@ TEST_F(ReadPoints, HeadersWithoutRowsNameColumns) {
   for (const char* const table : {"x,y,z\n", "a b c\n", "note;x;y;z", "one\ttwo\tthree\tfour\n"}) {
     EXPECT_TRUE(read(table).empty()) << table;
   }
-  ReadPointsOptions options;
-  options.columns = {2, 3, 4};
-  EXPECT_EQ(error_of("x,y,z\n", options), "pts:1: found 'x,y,z', expected a point, or names of columns");
+  EXPECT_EQ(error_of("x,y,z\n", kFromTheSecondOn), "pts:1: found 'x,y,z', expected a point, or names of columns");
 }
 
 TEST_F(ReadPoints, DecimalCommasBelowAHeaderAreTold) {
@@ -180,9 +177,7 @@ TEST_F(ReadPoints, HeaderThatNamesColumnsHasAsManyAsTheRows) {
   }
   EXPECT_EQ(error_of("x,y,z\n7,1,2,3\n"),
             "pts:2: the header has 3 columns, and the first row 4, expected as many, or --columns");
-  ReadPointsOptions options;
-  options.columns = {2, 3, 4};
-  EXPECT_EQ(read("x,y,z\n7,1,2,3\n8,-4,.5,6e-3\n", options), kTwo);
+  EXPECT_EQ(read("x,y,z\n7,1,2,3\n8,-4,.5,6e-3\n", kFromTheSecondOn), kTwo);
   EXPECT_EQ(read("x,y,z\n1,2,3,\n-4,.5,6e-3,\n"), kTwo) << "delimiters at the end";
   EXPECT_EQ(read("x,y,z,\n1,2,3\n-4,.5,6e-3\n"), kTwo);
   EXPECT_EQ(read("x,y,z,note\n1,2,3\n-4,.5,6e-3,a\n"), kTwo) << "the last fields of a row are missing";
@@ -229,7 +224,7 @@ TEST_F(ReadPoints, HeadersThatLeaveOpenWhichColumnsAreMeantAreWarnedAbout) {
             (std::vector<Warning>{{"columns",
                                    "the first three of 4 columns, 'id', 'tx' and 'ty', are taken for x, y and "
                                    "z, as no names tell; --columns takes others"}}));
-  EXPECT_TRUE(warnings("id tx ty tz", {.columns = {{2, 3, 4}}, .raw = {}}).empty());
+  EXPECT_TRUE(warnings("id tx ty tz", kFromTheSecondOn).empty());
   EXPECT_TRUE(warnings("id x y z").empty());
   EXPECT_TRUE(warnings("//X Y Z I").empty());
   EXPECT_TRUE(warnings("# no header").empty());
@@ -268,16 +263,14 @@ TEST_F(ReadPoints, HeaderNeedsAName) {
 
 // The header test and the data must not differ about the delimiter.
 TEST_F(ReadPoints, PointWithOtherDelimitersInItsTextIsNoHeader) {
-  ReadPointsOptions options;
-  options.columns = {2, 3, 4};
-  EXPECT_EQ(read("Smith, J.\t1\t2\t3\nDoe, A.\t-4\t.5\t6e-3\n", options), kTwo);
-  EXPECT_EQ(read("a,b;1;2;3\nc;-4;.5;6e-3\n", options), kTwo);
-  EXPECT_EQ(read("a;b,1,2,3\nc,-4,.5,6e-3\n", options), kTwo);
-  EXPECT_EQ(read("14\" pipe, x\t1\t2\t3\nc\t-4\t.5\t6e-3\n", options), kTwo);
-  EXPECT_EQ(read("x,y,z;1;2;3\nc;-4;.5;6e-3\n", options), kTwo);
-  EXPECT_EQ(read("x,y,z\t1\t2\t3\n", options).size(), 1u);
-  EXPECT_EQ(error_of("P1 1 2 3 a,b\nP2 -4 .5 6e-3 a\n", options).substr(0, 16), "pts:1: column 2 ");
-  EXPECT_EQ(error_of("a;b,1D0,2D0,3D0\nc,-4,.5,6e-3\n", options).substr(0, 6), "pts:1:");
+  EXPECT_EQ(read("Smith, J.\t1\t2\t3\nDoe, A.\t-4\t.5\t6e-3\n", kFromTheSecondOn), kTwo);
+  EXPECT_EQ(read("a,b;1;2;3\nc;-4;.5;6e-3\n", kFromTheSecondOn), kTwo);
+  EXPECT_EQ(read("a;b,1,2,3\nc,-4,.5,6e-3\n", kFromTheSecondOn), kTwo);
+  EXPECT_EQ(read("14\" pipe, x\t1\t2\t3\nc\t-4\t.5\t6e-3\n", kFromTheSecondOn), kTwo);
+  EXPECT_EQ(read("x,y,z;1;2;3\nc;-4;.5;6e-3\n", kFromTheSecondOn), kTwo);
+  EXPECT_EQ(read("x,y,z\t1\t2\t3\n", kFromTheSecondOn).size(), 1u);
+  EXPECT_EQ(error_of("P1 1 2 3 a,b\nP2 -4 .5 6e-3 a\n", kFromTheSecondOn).substr(0, 16), "pts:1: column 2 ");
+  EXPECT_EQ(error_of("a;b,1D0,2D0,3D0\nc,-4,.5,6e-3\n", kFromTheSecondOn).substr(0, 6), "pts:1:");
   EXPECT_EQ(error_of("id7, A\t.5\t.5\t.5\t\nid8\t.5\t.5\t.5\t\n"),
             "pts:1: column 1 is 'id7, A', expected a finite number");
 }
@@ -285,9 +278,7 @@ TEST_F(ReadPoints, PointWithOtherDelimitersInItsTextIsNoHeader) {
 TEST_F(ReadPoints, DelimitersWithinQuotesDoNotCountBetweenBlanks) {
   EXPECT_EQ(read("1 2 3 \"a;b\"\n-4 .5 6e-3 \"c, d\"\n"), kTwo);
   EXPECT_EQ(read("x y z \"a; 2\"\n1 2 3 4\n-4 .5 6e-3 5\n"), kTwo);
-  ReadPointsOptions options;
-  options.columns = {2, 3, 4};
-  EXPECT_EQ(read("\"a, b\" 1 2 3\nc -4 .5 6e-3\n", options), kTwo);
+  EXPECT_EQ(read("\"a, b\" 1 2 3\nc -4 .5 6e-3\n", kFromTheSecondOn), kTwo);
   EXPECT_EQ(error_of("1 2 3x \"a;b\"\n"), "pts:1: column 3 is '3x', expected a finite number");
 }
 

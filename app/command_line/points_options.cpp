@@ -36,7 +36,7 @@ std::optional<RawPrecision> parse_raw(const Values& values) {
   values.exclude("--raw", {"--format", "--columns", "--sample", "--dtype", "--pack-bits"});
   const std::string text = values.text("--raw");
   if (text == "f64") return RawPrecision::kDouble;
-  if (text == "f32") return RawPrecision::kFloat;
+  if (text == "f32") return RawPrecision::kSingle;
   invalid("--raw", text, "f64 or f32");
 }
 
@@ -44,8 +44,8 @@ OutputFormats output_formats(const PointsCommand& command) {
   if (command.sample) return {.written = {FieldFormat::kNpz, FieldFormat::kCsv}, .contents = "drawn points"};
   OutputFormats formats{.written = formats_that_hold(FormatTraits::kPoints), .contents = "points"};
   if (command.reading.raw) {
-    const bool single = *command.reading.raw == RawPrecision::kFloat;
-    formats.only = single ? FieldFormat::kRawFloat : FieldFormat::kRawDouble;
+    const bool single = *command.reading.raw == RawPrecision::kSingle;
+    formats.only = single ? FieldFormat::kRawSingle : FieldFormat::kRawDouble;
   }
   return formats;
 }

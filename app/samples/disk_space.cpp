@@ -72,7 +72,7 @@ double bytes_of_point(FieldFormat format, const OutputDescription& description) 
       return numbers * bytes_of_real(description, Precision::kDouble);
     case FieldFormat::kRawDouble:
       return numbers * sizeof(double);
-    case FieldFormat::kRawFloat:
+    case FieldFormat::kRawSingle:
       return numbers * sizeof(float);
     case FieldFormat::kNpz:
       return kCoordinates * (description.has_places ? 2.0 : 1.0) * (description.single_points ? 4.0 : 8.0) +

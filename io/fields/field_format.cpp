@@ -24,7 +24,7 @@ std::span<const FormatTraits> all_formats() {
       FormatTraits{kNifti, "nii", kArrays, kLattices},
       FormatTraits{kNiftiGz, "nii.gz", kArrays, kLattices},
       FormatTraits{kRawDouble, "", kArrays, kPoints},
-      FormatTraits{kRawFloat, "", kArrays, kPoints},
+      FormatTraits{kRawSingle, "", kArrays, kPoints},
       FormatTraits{kNone, "none", kNothing, 0},
   };
   return kFormats;

@@ -20,7 +20,7 @@ enum class FieldFormat {
   kNifti,
   kNiftiGz,    // NIfTI-1, packed by gzip
   kRawDouble,  // nothing but numbers, little-endian; has no name
-  kRawFloat,
+  kRawSingle,
   kNone,
 };
 

@@ -49,7 +49,7 @@ std::unique_ptr<LatticeWriter> make_lattice_writer(FieldFormat format, OutputFil
     case FieldFormat::kNiftiGz:
       return make_nifti_lattice_writer(output, lattice, description);
     case FieldFormat::kRawDouble:
-    case FieldFormat::kRawFloat:
+    case FieldFormat::kRawSingle:
       break;  // for points only; options are checked before anything is opened
   }
   throw std::logic_error("no lattice writer for this format");
@@ -67,8 +67,8 @@ std::unique_ptr<PointWriter> make_point_writer(FieldFormat format, OutputFile& o
       return make_npz_point_writer(output, size, description);
     case FieldFormat::kRawDouble:
       return make_raw_point_writer(output, RawPrecision::kDouble, description);
-    case FieldFormat::kRawFloat:
-      return make_raw_point_writer(output, RawPrecision::kFloat, description);
+    case FieldFormat::kRawSingle:
+      return make_raw_point_writer(output, RawPrecision::kSingle, description);
     case FieldFormat::kNone:
       return std::make_unique<NoPointWriter>();
     case FieldFormat::kVdb:

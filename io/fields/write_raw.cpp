@@ -53,7 +53,7 @@ class RawPointWriter final : public PointWriter {
 
 std::unique_ptr<PointWriter> make_raw_point_writer(OutputFile& output, RawPrecision precision,
                                                    const OutputDescription& description) {
-  if (precision == RawPrecision::kFloat) return std::make_unique<RawPointWriter<float>>(output, description);
+  if (precision == RawPrecision::kSingle) return std::make_unique<RawPointWriter<float>>(output, description);
   return std::make_unique<RawPointWriter<double>>(output, description);
 }
 

@@ -3,6 +3,6 @@
 
 namespace raycone {
 
-enum class RawPrecision { kDouble, kFloat };  // IEEE 754, 64 or 32 bits, little-endian
+enum class RawPrecision { kDouble, kSingle };  // IEEE 754, 64 or 32 bits, little-endian
 
 }  // namespace raycone

@@ -73,7 +73,7 @@ class RawPointReader final : public PointReader {
 }  // namespace
 
 std::unique_ptr<PointReader> read_raw_points(std::unique_ptr<InputBuffer> input, RawPrecision precision) {
-  if (precision == RawPrecision::kFloat) return std::make_unique<RawPointReader<float>>(std::move(input));
+  if (precision == RawPrecision::kSingle) return std::make_unique<RawPointReader<float>>(std::move(input));
   return std::make_unique<RawPointReader<double>>(std::move(input));
 }
 

@@ -146,7 +146,7 @@ TEST_F(DiskSpace, IsNothingOfCompressedLattices) {
 
 TEST_F(DiskSpace, IsWhatPointsTake) {
   for (const FieldFormat format :
-       {FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kNpz, FieldFormat::kRawDouble, FieldFormat::kRawFloat}) {
+       {FieldFormat::kCsv, FieldFormat::kNpy, FieldFormat::kNpz, FieldFormat::kRawDouble, FieldFormat::kRawSingle}) {
     for (const std::optional<Precision> precision : kAllPrecisions) {
       for (const FieldKind kind : kAllKinds) {
         OutputDescription description = described({kind}, precision);

@@ -55,7 +55,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   raycone::ReadPointsOptions options;
 #ifdef RAYCONE_RAW
   if (size == 0) return 0;
-  options.raw = data[0] % 2 == 0 ? raycone::RawPrecision::kFloat : raycone::RawPrecision::kDouble;
+  options.raw = data[0] % 2 == 0 ? raycone::RawPrecision::kSingle : raycone::RawPrecision::kDouble;
   ++data, --size;
 #endif
   const raycone::MemoryFile file(data, size);

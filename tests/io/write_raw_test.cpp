@@ -26,7 +26,7 @@ TEST(WriteRaw, FloatsAreBoundsOfTheErrorStill) {
   }
   {
     OutputFile output(directory / "out");
-    const auto writer = make_point_writer(FieldFormat::kRawFloat, output, 100, description);
+    const auto writer = make_point_writer(FieldFormat::kRawSingle, output, 100, description);
     writer->write(std::vector<Vec3>(100),
                   std::vector<FieldValues>{std::span(std::as_const(w)), std::span(std::as_const(bounds))});
     writer->finish();

@@ -112,7 +112,7 @@ std::vector<PointsChange> points_changes() {
                                       [](PointsCommand& c) {
                                         c.reading.columns = {2, 3, 4};
                                       },
-                                      [](PointsCommand& c) { c.reading.raw = RawPrecision::kFloat; },
+                                      [](PointsCommand& c) { c.reading.raw = RawPrecision::kSingle; },
                                       [](PointsCommand& c) { c.sample.emplace(); },
                                       [](PointsCommand& c) {
                                         c.sample.emplace().groups = {UniformSamples{7}, NearSamples{8, 0.01}};

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "core/arrangement/effort.h"
+#include "core/data/keep_where.h"
 #include "core/data/vec3.h"
 #include "core/mesh/near_vertices.h"
 #include "core/mesh/used_part.h"
@@ -26,26 +27,12 @@ using Splits = std::map<Edge, std::uint32_t>;          // by which vertex
 
 void merge_near_vertices(RuleBorder& border, double distance) {
   Representatives near = representatives_within(border.mesh.vertices, distance);
-  RuleBorder merged{{std::move(near.vertices), {}}, {}};
-  for (std::size_t face = 0; face < border.sources.size(); ++face) {
-    Triangle t = border.mesh.triangles[face];
+  border.mesh.vertices = std::move(near.vertices);
+  std::vector<Triangle>& triangles = border.mesh.triangles;
+  for (Triangle& t : triangles) {
     for (std::uint32_t& corner : t) corner = near.of[corner];
-    if (is_collapsed(t)) continue;
-    merged.mesh.triangles.push_back(t);
-    merged.sources.push_back(border.sources[face]);
   }
-  border = std::move(merged);
-}
-
-void keep(RuleBorder& border, const std::vector<bool>& stays) {
-  std::size_t count = 0;
-  for (std::size_t n = 0; n < stays.size(); ++n) {
-    if (!stays[n]) continue;
-    border.mesh.triangles[count] = border.mesh.triangles[n];
-    border.sources[count++] = border.sources[n];
-  }
-  border.mesh.triangles.resize(count);
-  border.sources.resize(count);
+  keep_where([&](std::size_t face) { return !is_collapsed(triangles[face]); }, triangles, border.sources);
 }
 
 // The place of the corner that is so near to the opposite side, which is the longest one.
@@ -228,7 +215,7 @@ void cancel(RuleBorder& border) {
       stays[faces[n].face] = true;
     }
   }
-  keep(border, stays);
+  keep_where([&](std::size_t n) { return stays[n]; }, border.mesh.triangles, border.sources);
 }
 
 }  // namespace

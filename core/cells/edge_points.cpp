@@ -6,6 +6,7 @@
 
 #include "core/cells/edge_crossing.h"
 #include "core/cells/edge_roots.h"
+#include "core/data/keep_where.h"
 #include "core/machine/first_touch.h"
 #include "core/machine/threads.h"
 
@@ -153,11 +154,7 @@ void EdgePointFinder::decide() {
   }
   for (std::size_t place = 0; !left.empty(); ++place) {
     const std::vector<Sides> sides = rule_.is_closed() ? sides_in_closed(left, place) : sides_in_open(left, place);
-    std::size_t count = 0;
-    for (std::size_t n = 0; n < left.size(); ++n) {
-      if (!decides(*left[n], place, sides[n])) left[count++] = left[n];
-    }
-    left.resize(count);
+    keep_where([&](std::size_t n) { return !decides(*left[n], place, sides[n]); }, left);
   }
 }
 

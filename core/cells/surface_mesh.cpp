@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "core/data/keep_where.h"
 #include "core/mesh/used_part.h"
 
 namespace raycone {
@@ -13,16 +14,9 @@ bool has_holes(const SurfaceMesh& surface) {
 }
 
 void drop_gone(SurfaceMesh& surface) {
-  std::size_t left = 0;
-  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
-    const Triangle t = surface.mesh.triangles[face];
-    if (is_gone(t)) continue;
-    surface.sources[left] = surface.sources[face];
-    surface.mesh.triangles[left++] = t;
-  }
-  surface.mesh.triangles.resize(left);
-  surface.sources.resize(left);
-  surface.mesh = used_part(surface.mesh.vertices, std::move(surface.mesh.triangles));
+  std::vector<Triangle>& triangles = surface.mesh.triangles;
+  keep_where([&](std::size_t face) { return !is_gone(triangles[face]); }, triangles, surface.sources);
+  surface.mesh = used_part(surface.mesh.vertices, std::move(triangles));
 }
 
 }  // namespace raycone

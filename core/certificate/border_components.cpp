@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/cells/surface_mesh.h"
+#include "core/data/keep_where.h"
 #include "core/evaluation/winding_number.h"
 #include "core/exact/volume_sign.h"
 #include "core/mesh/exterior_edges.h"
@@ -48,15 +49,10 @@ std::vector<std::vector<Triangle>> triangles_of(const Components& components, co
 }
 
 void keep_components(SurfaceMesh& surface, const Components& components, const std::vector<bool>& kept) {
-  SurfaceMesh left;
-  for (std::size_t face = 0; face < surface.sources.size(); ++face) {
-    const Triangle& t = surface.mesh.triangles[face];
-    if (!kept[components.of_vertex[t[0]]]) continue;
-    left.mesh.triangles.push_back(t);
-    left.sources.push_back(surface.sources[face]);
-  }
-  left.mesh = used_part(surface.mesh.vertices, std::move(left.mesh.triangles));
-  surface = std::move(left);
+  std::vector<Triangle>& triangles = surface.mesh.triangles;
+  const auto is_kept = [&](std::size_t face) { return kept[components.of_vertex[triangles[face][0]]]; };
+  keep_where(is_kept, triangles, surface.sources);
+  surface.mesh = used_part(surface.mesh.vertices, std::move(triangles));
 }
 
 bool keep_border(SurfaceMesh& surface, const Rule& rule) {

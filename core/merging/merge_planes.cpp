@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "core/data/keep_where.h"
 #include "core/machine/threads.h"
 #include "core/merging/brick_merger.h"
 #include "core/merging/surface_bricks.h"
@@ -38,17 +39,8 @@ namespace {
 constexpr std::uint32_t kNone = SurfaceBricks::kNone;
 
 void drop_gone(MergedFaces& faces) {
-  std::size_t left = 0;
-  for (std::size_t face = 0; face < faces.triangles.size(); ++face) {
-    const Triangle t = faces.triangles[face];
-    if (is_gone(t)) continue;
-    faces.sources[left] = faces.sources[face];
-    faces.faces[left] = faces.faces[face];
-    faces.triangles[left++] = t;
-  }
-  faces.triangles.resize(left);
-  faces.sources.resize(left);
-  faces.faces.resize(left);
+  const auto is_there = [&](std::size_t face) { return !is_gone(faces.triangles[face]); };
+  keep_where(is_there, faces.triangles, faces.sources, faces.faces);
 }
 
 }  // namespace

@@ -5,8 +5,10 @@
 #include <utility>
 
 #include "core/crossings/check_counts.h"
+#include "core/data/keep_where.h"
 #include "core/exact/scale.h"
 #include "core/machine/floating_point.h"
+#include "core/machine/numbers_where.h"
 #include "core/mesh/equal_vertices.h"
 #include "core/orientation/closed_patches.h"
 #include "core/orientation/doubled_quads.h"
@@ -171,23 +173,17 @@ std::vector<FaceFate> fates(const UniqueFaces& unique, const std::vector<std::in
 
 OrientedMesh with_fates(TriangleMesh mesh, const std::vector<FaceFate>& fate) {
   OrientationCounts counts;
-  std::size_t left = 0;
   for (std::size_t i = 0; i < fate.size(); ++i) {
-    if (fate[i] == FaceFate::kDropped) {
-      ++counts.dropped_duplicates;
-      continue;
-    }
-    mesh.triangles[left] = mesh.triangles[i];
-    if (fate[i] == FaceFate::kReversed) {
-      reverse(mesh.triangles[left]);
-      ++counts.flipped_faces;
-    }
-    ++left;
+    if (fate[i] == FaceFate::kDropped) ++counts.dropped_duplicates;
+    if (fate[i] != FaceFate::kReversed) continue;
+    reverse(mesh.triangles[i]);
+    ++counts.flipped_faces;
   }
-  mesh.triangles.resize(left);
   std::vector<std::uint32_t> places;
-  for (std::size_t i = 0; counts.dropped_duplicates > 0 && i < fate.size(); ++i) {
-    if (fate[i] != FaceFate::kDropped) places.push_back(static_cast<std::uint32_t>(i));
+  if (counts.dropped_duplicates > 0) {
+    const auto stays = [&](std::size_t i) { return fate[i] != FaceFate::kDropped; };
+    keep_where(stays, mesh.triangles);
+    places = numbers_where(fate.size(), stays);
   }
   return {std::move(mesh), counts, std::move(places)};
 }

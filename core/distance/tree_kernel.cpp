@@ -105,19 +105,19 @@ class LeastSquare {
 constexpr std::size_t kMostWaiting = 12 * TrianglePack::kWidth;
 
 double search_nearest(const DistanceTree& tree, const Vec3& p, double limit) {
-  struct Candidate {
+  struct Waiting {
     double bound;
     std::uint32_t level;  // one above that of the node; 0: a pack
     std::uint32_t index;
   };
-  std::array<Candidate, kMostWaiting> stack;
+  std::array<Waiting, kMostWaiting> stack;
   std::size_t waiting = 0;
   stack[waiting++] = {0.0, static_cast<std::uint32_t>(tree.levels().size()), 0};
   LeastSquare found(p, limit);
   const VectorLanes ps = in_all_lanes(p);
   alignas(64) Bounds bounds;
   while (waiting > 0) {
-    const Candidate here = stack[--waiting];
+    const Waiting here = stack[--waiting];
     if (here.bound >= found.reach()) continue;
     if (here.level == 0) {
       found.look_at(tree.packs()[here.index]);
@@ -141,17 +141,17 @@ double search_nearest(const DistanceTree& tree, const Vec3& p, double limit) {
 
 void search_packs(const DistanceTree& tree, const Box& box, double limit, std::size_t most,
                   std::vector<std::uint32_t>& found) {
-  struct Candidate {
+  struct Waiting {
     std::uint32_t level, index;
   };
-  std::array<Candidate, kMostWaiting> stack;
+  std::array<Waiting, kMostWaiting> stack;
   std::size_t waiting = 0;
   stack[waiting++] = {static_cast<std::uint32_t>(tree.levels().size()), 0};
   const VectorLanes from = in_all_lanes(box.lower), to = in_all_lanes(box.upper);
   alignas(64) Bounds bounds;
   found.clear();
   while (waiting > 0 && found.size() < most) {
-    const Candidate here = stack[--waiting];
+    const Waiting here = stack[--waiting];
     if (here.level == 0) {
       found.push_back(here.index);
       continue;

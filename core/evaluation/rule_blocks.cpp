@@ -83,7 +83,7 @@ Middle middle_of(const LatticeRows& rows, const SampleBox& samples, const Box& b
 }
 
 // A block in which the rest is smooth. It is known well enough once it is known at one sample, or at some nodes.
-struct Candidate {
+struct SmoothBlock {
   CutBlock block;
   Crossings which;
   double gradient;                          // its length is at most this, turns per unit
@@ -134,16 +134,16 @@ class RuleBlocks {
 
  private:
   [[nodiscard]] std::size_t few() const { return has_rough_sums_ ? kFewForRoughSums : kFew; }
-  void look_at(CutBlock block, std::vector<Candidate>& candidates, std::vector<CutBlock>& parts,
+  void look_at(CutBlock block, std::vector<SmoothBlock>& smooth_blocks, std::vector<CutBlock>& parts,
                std::vector<SampleBox>& left) const;
   void find_certificates(CutBlock whole, Undecided& left) const;
   void divide(CutBlock block, std::vector<CutBlock>& parts, std::vector<SampleBox>& left) const;
-  [[nodiscard]] Candidate candidate_of(CutBlock block, const Box& box) const;
-  void evaluate(std::span<Candidate> candidates) const;
-  [[nodiscard]] bool decide(const Candidate& candidate) const;
-  [[nodiscard]] bool choose_nodes(Candidate& candidate) const;
-  void interpolate(const Candidate& candidate, std::vector<SampleBox>& undecided) const;
-  void interpolate(const Candidate& candidate, const SampleBox& part, double needed, LayerValues& layer,
+  [[nodiscard]] SmoothBlock smooth_block_of(CutBlock block, const Box& box) const;
+  void evaluate(std::span<SmoothBlock> smooth_blocks) const;
+  [[nodiscard]] bool decide(const SmoothBlock& smooth) const;
+  [[nodiscard]] bool choose_nodes(SmoothBlock& smooth) const;
+  void interpolate(const SmoothBlock& smooth, std::vector<SampleBox>& undecided) const;
+  void interpolate(const SmoothBlock& smooth, const SampleBox& part, double needed, LayerValues& layer,
                    std::vector<SampleBox>& undecided) const;
 
   const SideSamples& samples_;
@@ -189,33 +189,33 @@ void RuleBlocks::finish(Undecided left) const {
 void RuleBlocks::find_certificates(CutBlock whole, Undecided& left) const {
   std::vector<CutBlock> blocks{std::move(whole)};
   while (!blocks.empty()) {
-    std::vector<Candidate> candidates, interpolated;
+    std::vector<SmoothBlock> smooth_blocks, interpolated;
     std::vector<CutBlock> parts;
-    for (CutBlock& block : blocks) look_at(std::move(block), candidates, parts, left.boxes);
-    evaluate(candidates);
-    for (Candidate& candidate : candidates) {
-      if (decide(candidate)) continue;
-      if (choose_nodes(candidate)) {
-        interpolated.push_back(std::move(candidate));
+    for (CutBlock& block : blocks) look_at(std::move(block), smooth_blocks, parts, left.boxes);
+    evaluate(smooth_blocks);
+    for (SmoothBlock& smooth : smooth_blocks) {
+      if (decide(smooth)) continue;
+      if (choose_nodes(smooth)) {
+        interpolated.push_back(std::move(smooth));
       } else {
-        divide(std::move(candidate.block), parts, left.boxes);
+        divide(std::move(smooth.block), parts, left.boxes);
       }
     }
     evaluate(interpolated);
-    for (const Candidate& candidate : interpolated) interpolate(candidate, left.runs);
+    for (const SmoothBlock& smooth : interpolated) interpolate(smooth, left.runs);
     blocks = std::move(parts);
   }
 }
 
-// Makes it a candidate, or divides it, or gives it up.
-void RuleBlocks::look_at(CutBlock block, std::vector<Candidate>& candidates, std::vector<CutBlock>& parts,
+// Makes it a smooth block, or divides it, or gives it up.
+void RuleBlocks::look_at(CutBlock block, std::vector<SmoothBlock>& smooth_blocks, std::vector<CutBlock>& parts,
                          std::vector<SampleBox>& left) const {
   const Box box = rows_.box_of(block.samples);
   blocks_.forget_others(block, box);
   if (!block.is_cut()) {
-    Candidate candidate = candidate_of(std::move(block), box);
-    if (candidate.change <= kMostChange) return candidates.push_back(std::move(candidate));
-    block = std::move(candidate.block);
+    SmoothBlock smooth = smooth_block_of(std::move(block), box);
+    if (smooth.change <= kMostChange) return smooth_blocks.push_back(std::move(smooth));
+    block = std::move(smooth.block);
   }
   divide(std::move(block), parts, left);
 }
@@ -225,7 +225,7 @@ void RuleBlocks::divide(CutBlock block, std::vector<CutBlock>& parts, std::vecto
   blocks_.divide(std::move(block), parts);
 }
 
-Candidate RuleBlocks::candidate_of(CutBlock block, const Box& box) const {
+SmoothBlock RuleBlocks::smooth_block_of(CutBlock block, const Box& box) const {
   const auto [middle, radius] = middle_of(rows_, block.samples, box);
   const double gradient = changes_.gradient_in(box, kMostChange / radius);
   const Crossings which = block.caps.empty() ? Crossings::kClosed : Crossings::kMesh;
@@ -233,58 +233,58 @@ Candidate RuleBlocks::candidate_of(CutBlock block, const Box& box) const {
 }
 
 // Sets their rests, those of neighbours in space together: they take much the same way through the far field.
-void RuleBlocks::evaluate(std::span<Candidate> candidates) const {
+void RuleBlocks::evaluate(std::span<SmoothBlock> smooth_blocks) const {
   struct Place {
     std::uint64_t code;
-    Candidate* candidate;
+    SmoothBlock* smooth;
     std::size_t sample;
   };
   std::vector<Place> places;
-  for (Candidate& candidate : candidates) {
-    candidate.rest.resize(candidate.samples.size());
-    for (std::size_t n = 0; n < candidate.samples.size(); ++n) {
-      places.push_back({SideSamples::code_of(candidate.samples[n]), &candidate, n});
+  for (SmoothBlock& smooth : smooth_blocks) {
+    smooth.rest.resize(smooth.samples.size());
+    for (std::size_t n = 0; n < smooth.samples.size(); ++n) {
+      places.push_back({SideSamples::code_of(smooth.samples[n]), &smooth, n});
     }
   }
   std::ranges::sort(places, {}, &Place::code);
   auto set = [&](std::size_t index, const Vec3&, double w) {
-    const auto [code, candidate, n] = places[index];
-    candidate->rest[n] = w - samples_.crossings_at(candidate->samples[n], candidate->which);
-    candidate->largest = std::max(candidate->largest, std::abs(w));
+    const auto [code, smooth, n] = places[index];
+    smooth->rest[n] = w - samples_.crossings_at(smooth->samples[n], smooth->which);
+    smooth->largest = std::max(smooth->largest, std::abs(w));
   };
   using Tile = LatticeTile<decltype(set)>;
   Tile tile(mesh_, set, Tile::Sum::kUnsettled);
   for (std::size_t index = 0; index < places.size(); ++index) {
-    samples_.add(tile, index, places[index].candidate->samples[places[index].sample]);
+    samples_.add(tile, index, places[index].smooth->samples[places[index].sample]);
   }
   tile.evaluate();
 }
 
-bool RuleBlocks::decide(const Candidate& candidate) const {
-  const double rest = candidate.rest[0];
-  return samples_.decide(candidate.block.samples, candidate.which, rest,
-                         candidate.change + mesh_.doubt() + kSumsRound * (1 + std::abs(rest) + candidate.largest));
+bool RuleBlocks::decide(const SmoothBlock& smooth) const {
+  const double rest = smooth.rest[0];
+  return samples_.decide(smooth.block.samples, smooth.which, rest,
+                         smooth.change + mesh_.doubt() + kSumsRound * (1 + std::abs(rest) + smooth.largest));
 }
 
-// Makes nodes the candidate's samples. Returns whether that is worth it.
-bool RuleBlocks::choose_nodes(Candidate& candidate) const {
-  const SampleBox& box = candidate.block.samples;
+// Makes nodes the block's samples. Returns whether that is worth it.
+bool RuleBlocks::choose_nodes(SmoothBlock& smooth) const {
+  const SampleBox& box = smooth.block.samples;
   const ChangeSums derivatives = changes_.derivatives_in(rows_.box_of(box));
-  candidate.nodes = raycone::choose_nodes(rows_, box, derivatives, candidate.change);
-  if (!candidate.nodes) return false;
-  candidate.samples = candidate.nodes->nodes();
+  smooth.nodes = raycone::choose_nodes(rows_, box, derivatives, smooth.change);
+  if (!smooth.nodes) return false;
+  smooth.samples = smooth.nodes->nodes();
   return true;
 }
 
 // Sets the sides that are certain by interpolation between the nodes. Adds the other samples, in runs.
-void RuleBlocks::interpolate(const Candidate& candidate, std::vector<SampleBox>& undecided) const {
+void RuleBlocks::interpolate(const SmoothBlock& smooth, std::vector<SampleBox>& undecided) const {
   constexpr std::array<std::size_t, 3> kPart{24, 12, 12};  // samples
-  const SampleBox& box = candidate.block.samples;
-  double largest = candidate.largest;
-  for (const double rest : candidate.rest) largest = std::max(largest, std::abs(rest));
+  const SampleBox& box = smooth.block.samples;
+  double largest = smooth.largest;
+  for (const double rest : smooth.rest) largest = std::max(largest, std::abs(rest));
   // Interpolation rounds some 30 times, relative to growth() times the largest value: growth() is far below 8000.
   const double doubt = mesh_.doubt() + 32 * kSumsRound * (1 + largest);
-  const double needed = candidate.nodes->bend() + candidate.nodes->growth() * doubt;
+  const double needed = smooth.nodes->bend() + smooth.nodes->growth() * doubt;
   LayerValues layer;
   SampleBox part{};
   for (std::size_t k = box.begin[2]; k < box.end[2]; k = part.end[2]) {
@@ -294,24 +294,24 @@ void RuleBlocks::interpolate(const Candidate& candidate, std::vector<SampleBox>&
         for (std::size_t axis = 0; axis < 3; ++axis) {
           part.end[axis] = std::min(part.begin[axis] + kPart[axis], box.end[axis]);
         }
-        interpolate(candidate, part, needed, layer, undecided);
+        interpolate(smooth, part, needed, layer, undecided);
       }
     }
   }
 }
 
-// Of a part of the candidate's block: from the sample in its middle alone, where the part is decided by that.
-void RuleBlocks::interpolate(const Candidate& candidate, const SampleBox& part, double needed, LayerValues& layer,
+// Of a part of the block: from the sample in its middle alone, where the part is decided by that.
+void RuleBlocks::interpolate(const SmoothBlock& smooth, const SampleBox& part, double needed, LayerValues& layer,
                              std::vector<SampleBox>& undecided) const {
-  const NodeGrid& nodes = *candidate.nodes;
+  const NodeGrid& nodes = *smooth.nodes;
   const auto [middle, radius] = middle_of(rows_, part, rows_.box_of(part));
-  const double rest = nodes.at(candidate.rest, middle);
-  const double change = radius * candidate.gradient * (1 + kSumsRound);
-  if (samples_.decide(part, candidate.which, rest, needed + change)) return;
+  const double rest = nodes.at(smooth.rest, middle);
+  const double change = radius * smooth.gradient * (1 + kSumsRound);
+  if (samples_.decide(part, smooth.which, rest, needed + change)) return;
   for (std::size_t k = part.begin[2]; k < part.end[2]; ++k) {
-    nodes.interpolate(candidate.rest, part, k, matrices_, layer);
+    nodes.interpolate(smooth.rest, part, k, matrices_, layer);
     for (std::size_t j = 0; j < part.side(1); ++j) {
-      samples_.decide_row({part.begin[0], part.begin[1] + j, k}, candidate.which,
+      samples_.decide_row({part.begin[0], part.begin[1] + j, k}, smooth.which,
                           std::span(layer.values).subspan(j * layer.width, part.side(0)), needed, undecided);
     }
   }

@@ -383,10 +383,10 @@ MUTANTS = [
 
     # --- Rules on lattices ---
     Mutant("blocks_do_not_change", "a block is decided only if the bound of the change allows it", [
-        ("core/evaluation/rule_blocks.cpp", "candidate.change + mesh_.doubt()",
-         "0 * candidate.change + mesh_.doubt()")]),
+        ("core/evaluation/rule_blocks.cpp", "smooth.change + mesh_.doubt()",
+         "0 * smooth.change + mesh_.doubt()")]),
     Mutant("certificate_forgets_large_values", "what is left of a large value has that value's rounding", [
-        ("core/evaluation/rule_blocks.cpp", " + candidate.largest));", "));")]),
+        ("core/evaluation/rule_blocks.cpp", " + smooth.largest));", "));")]),
     Mutant("caps_are_not_crossed", "in blocks, crossings are those of the mesh less its caps", [
         ("core/evaluation/side_samples.cpp", "return visit(index + from, index + to, n - caps);",
          "return visit(index + from, index + to, n - 0 * caps);")]),
@@ -786,11 +786,11 @@ MUTANTS = [
         ("core/boundary/change_kernel.cpp", "of_length = hn::Mul(of_length, inverse);",
          "of_length = hn::Mul(hn::Set(d, 0.1), hn::Mul(of_length, inverse));")]),
     Mutant("interpolation_is_exact", "an interpolated block is decided only if the bound of its bend allows it", [
-        ("core/evaluation/rule_blocks.cpp", "const double needed = candidate.nodes->bend() + ", "const double needed = ")]),
+        ("core/evaluation/rule_blocks.cpp", "const double needed = smooth.nodes->bend() + ", "const double needed = ")]),
     Mutant("polynomials_are_closer", "a polynomial is off by the product of the distances from its nodes", [
         ("core/evaluation/lattice_polynomial.cpp", "product_ * derivative", "product_ / 8 * derivative")]),
     Mutant("parts_do_not_change", "a part of an interpolated block is decided only if the change in it allows it", [
-        ("core/evaluation/rule_blocks.cpp", "const double change = radius * candidate.gradient", "const double change = 0 * radius * candidate.gradient")]),
+        ("core/evaluation/rule_blocks.cpp", "const double change = radius * smooth.gradient", "const double change = 0 * radius * smooth.gradient")]),
     Mutant("interpolation_with_wrong_weights", "a sample has the weights of its place in the block", [
         ("core/evaluation/lattice_polynomial.cpp", "x.weights(0).data() + (part.begin[0] - begin_[0])",
          "x.weights(0).data()")]),

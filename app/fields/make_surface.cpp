@@ -137,11 +137,12 @@ MadeSurface make_surface(const ChosenInput& input, const TriangleMesh& mesh, con
   }
   const FineAndRough evaluators =
       at_points ? FineAndRough(at_points->fine, at_points->rough) : FineAndRough(*evaluator);
+  const SurfaceInput made_of{mesh, evaluators, inside, options};
   FinishedSurface closed = with_surface_errors(name, options, [&] {
-    std::optional<FinishedSurface> itself = mesh_as_surface(mesh, evaluators, inside, options);
+    std::optional<FinishedSurface> itself = mesh_as_surface(made_of);
     if (itself) return *std::move(itself);
     check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
-    return closed_surface(mesh, evaluators, inside, options);
+    return closed_surface(made_of);
   });
   MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options), tally, {}};
   if (options.at_stage) options.at_stage("measuring");

@@ -43,9 +43,9 @@ bool keeps_nodes(const TriangleMesh& closed, const NodeSet& inside, const Rule& 
 
 }  // namespace
 
-std::optional<FilledBorder> filled_border(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges,
-                                          const FineAndRough& evaluators, const NodeSet& inside,
-                                          const SurfaceOptions& options, const BorderLimits& limits) {
+std::optional<FilledBorder> filled_border(const SurfaceInput& input, const std::vector<ExteriorEdge>& edges,
+                                          const BorderLimits& limits) {
+  const auto& [mesh, evaluators, inside, options] = input;
   const TriangleMesh closed = closed_by_caps(mesh, edges);
   if (is_mostly_holes(mesh, edges, closed.triangles.size() - mesh.triangles.size())) return std::nullopt;
   if (!keeps_nodes(closed, inside, options.rule)) return std::nullopt;

@@ -5,10 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/cells/edge_roots.h"
-#include "core/cells/node_set.h"
 #include "core/cells/surface_mesh.h"
-#include "core/data/triangle_mesh.h"
 #include "core/mesh/exterior_edges.h"
 #include "core/surface/surface.h"
 
@@ -31,9 +28,8 @@ struct FilledBorder {
 // eighth of the nodes are elsewhere at first, or the result is not near the threshold, or has lost what separates
 // (fill_check). The same for any number of threads. Preconditions: as of closed_surface(); `edges` are the exterior
 // edges of the mesh. Needs DefaultFloatingPoint.
-[[nodiscard]] std::optional<FilledBorder> filled_border(const TriangleMesh& mesh,
+[[nodiscard]] std::optional<FilledBorder> filled_border(const SurfaceInput& input,
                                                         const std::vector<ExteriorEdge>& edges,
-                                                        const FineAndRough& evaluators, const NodeSet& inside,
-                                                        const SurfaceOptions& options, const BorderLimits& limits);
+                                                        const BorderLimits& limits);
 
 }  // namespace raycone

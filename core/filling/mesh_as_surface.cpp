@@ -87,15 +87,6 @@ void simplify(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& in
   simplify_surface(made, inside, most, options, settler);
 }
 
-// What there is to know of the mesh and the lattice.
-struct Input {
-  const TriangleMesh& mesh;
-  const FineAndRough& evaluators;
-  const NodeSet& inside;
-  const SurfaceOptions& options;
-  std::uint64_t most;  // triangles, once merged
-};
-
 // With vertices joined that rounding alone keeps apart: cracks of such a width may run around whole faces, and what
 // fills their loops would lie anywhere.
 TriangleMesh without_cracks(const TriangleMesh& mesh) {
@@ -103,15 +94,15 @@ TriangleMesh without_cracks(const TriangleMesh& mesh) {
   return weld(mesh, {WeldMode::kDistance, std::max(rounding, std::numeric_limits<double>::min())});
 }
 
-// Of any mesh. Adds what is too thin for the lattice to `own`.
-std::optional<MeshBorder> border_of(const Input& input, OwnFaces& own) {
-  const auto& [mesh, evaluators, inside, options, most] = input;
+// Of any mesh. Adds what is too thin for the lattice to `own`. `most`: triangles, once merged.
+std::optional<MeshBorder> border_of(const SurfaceInput& input, std::uint64_t most, OwnFaces& own) {
+  const auto& [mesh, evaluators, inside, options] = input;
   const BorderLimits limits{static_cast<std::size_t>(kBeforeBorder * static_cast<double>(most)), most / kPerFillFace};
   const std::vector<ExteriorEdge> edges = exterior_edges(mesh);
   if (!edges.empty()) {
     const TriangleMesh joined = without_cracks(mesh);
     if (exterior_edges(joined).empty()) return mesh_border(joined, inside, options, limits.cut);
-    std::optional<FilledBorder> filled = filled_border(mesh, edges, evaluators, inside, options, limits);
+    std::optional<FilledBorder> filled = filled_border(input, edges, limits);
     if (filled) {
       own.left_out_of_all += filled->left_out_of_all;
       return MeshBorder{std::move(filled->surface), Rule{}};
@@ -120,10 +111,10 @@ std::optional<MeshBorder> border_of(const Input& input, OwnFaces& own) {
   return mesh_border(mesh, inside, options, limits.cut);
 }
 
-std::optional<FinishedSurface> whole_mesh(const Input& input) {
-  const auto& [mesh, evaluators, inside, options, most] = input;
+std::optional<FinishedSurface> whole_mesh(const SurfaceInput& input, std::uint64_t most) {
+  const auto& [mesh, evaluators, inside, options] = input;
   OwnFaces own;
-  std::optional<MeshBorder> border = border_of(input, own);
+  std::optional<MeshBorder> border = border_of(input, most, own);
   if (!border) return std::nullopt;
   FinishedSurface made{std::move(border->surface)};
   if (!keep_seen(made.surface, mesh, inside, border->rule, own)) return std::nullopt;
@@ -139,18 +130,15 @@ std::optional<FinishedSurface> whole_mesh(const Input& input) {
 
 }  // namespace
 
-std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const FineAndRough& evaluators,
-                                               const NodeSet& inside, const SurfaceOptions& options) {
+std::optional<FinishedSurface> mesh_as_surface(const SurfaceInput& input) {
   const DefaultFloatingPoint guard;
+  const auto& [mesh, evaluators, inside, options] = input;
   if (options.thickness > 0.0 || !options.merge_planes) return std::nullopt;
   const std::uint64_t most = kMostPerCell * mixed_cells(inside);
   if (static_cast<double>(mesh.triangles.size()) > kBeforeMerging * static_cast<double>(most)) return std::nullopt;
   if (options.at_stage) options.at_stage("looking at the mesh itself");
-  if (!is_out_of_scale(inside.lattice(), options)) return whole_mesh({mesh, evaluators, inside, options, most});
-  const auto make = [&](auto& scaled, auto& in_scale, auto& nodes, auto& as) {
-    return whole_mesh({scaled, in_scale, nodes, as, most});
-  };
-  return made_in_scale(mesh, evaluators, inside, options, make);
+  if (!is_out_of_scale(inside.lattice(), options)) return whole_mesh(input, most);
+  return made_in_scale(input, [&](const SurfaceInput& scaled) { return whole_mesh(scaled, most); });
 }
 
 }  // namespace raycone

@@ -3,8 +3,6 @@
 
 #include <optional>
 
-#include "core/cells/node_set.h"
-#include "core/data/triangle_mesh.h"
 #include "core/surface/surface.h"
 
 namespace raycone {
@@ -19,8 +17,7 @@ namespace raycone {
 // plane are merged, then `options.simplify` holds, as closed_surface() does it. None otherwise, and where that function
 // would do something else: where the set has a thickness, or no faces are to be merged, and where what fills holes is
 // not along the threshold, or cuts off what separates. Lattices are not refused that are too fine for that one. The
-// same for any number of threads. Preconditions: as of closed_surface(); `evaluators` as that takes them.
-[[nodiscard]] std::optional<FinishedSurface> mesh_as_surface(const TriangleMesh& mesh, const FineAndRough& evaluators,
-                                                             const NodeSet& inside, const SurfaceOptions& options);
+// same for any number of threads. Preconditions: as of closed_surface().
+[[nodiscard]] std::optional<FinishedSurface> mesh_as_surface(const SurfaceInput& input);
 
 }  // namespace raycone

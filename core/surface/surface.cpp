@@ -39,20 +39,19 @@ constexpr double kMostOfFirst = 0x1p-5;  // voxels; of margins at first, as wide
 // One attempt at a surface after the other.
 class SurfaceMaker {
  public:
-  SurfaceMaker(const TriangleMesh& mesh, const FineAndRough& evaluators, const NodeSet& inside,
-               const SurfaceOptions& options)
-      : mesh_(mesh),
-        evaluators_(evaluators),
-        rule_(evaluators, options.rule),
-        inside_(inside),
-        options_(options),
-        normals_(mesh),
-        cells_(inside),
-        triangles_(options.thickness > 0.0 ? CellTriangles() : CellTriangles(mesh, cells_)),
-        creases_(options.thickness > 0.0 ? CellCreases() : CellCreases(mesh, normals_, triangles_, cells_)),
-        distance_(mesh),
-        settler_(mesh, normals_, distance_, farthest_source(inside.lattice(), options.thickness)),
-        tolerance_(plane_tolerance(mesh, inside.lattice())) {}
+  explicit SurfaceMaker(const SurfaceInput& input)
+      : mesh_(input.mesh),
+        evaluators_(input.evaluators),
+        inside_(input.inside),
+        options_(input.options),
+        rule_(evaluators_, options_.rule),
+        normals_(mesh_),
+        cells_(inside_),
+        triangles_(options_.thickness > 0.0 ? CellTriangles() : CellTriangles(mesh_, cells_)),
+        creases_(options_.thickness > 0.0 ? CellCreases() : CellCreases(mesh_, normals_, triangles_, cells_)),
+        distance_(mesh_),
+        settler_(mesh_, normals_, distance_, farthest_source(inside_.lattice(), options_.thickness)),
+        tolerance_(plane_tolerance(mesh_, inside_.lattice())) {}
 
   FinishedSurface make() {
     enter("finding points on the mesh");
@@ -119,7 +118,7 @@ class SurfaceMaker {
     const auto merged_surface = [&](const Lattice& moved) -> std::optional<SurfaceMesh> {
       const NodeSet nodes = nodes_inside(evaluators_.rough, options_.rule, moved);
       if (nodes.empty() || nodes.reaches_border()) return std::nullopt;
-      SurfaceMaker maker(mesh_, evaluators_, nodes, merge_only);
+      SurfaceMaker maker({mesh_, evaluators_, nodes, merge_only});
       maker.find_points(margins);
       Attempt made = maker.attempt(maker.points_of_sections(margins), margins, {.cells = ContourCells::kPolygons});
       if (!made.made || !made.made->merged) return std::nullopt;
@@ -247,9 +246,9 @@ class SurfaceMaker {
 
   const TriangleMesh& mesh_;
   FineAndRough evaluators_;
-  RuleAlong rule_;
   const NodeSet& inside_;
   const SurfaceOptions& options_;
+  RuleAlong rule_;
   TriangleNormals normals_;
   SurfaceCells cells_;
   CellTriangles triangles_;
@@ -271,32 +270,30 @@ double surface_margin(const Lattice& lattice, CoordinatePrecision precision) {
   return std::max(kLeast, (kRoundings * voxels <= kMostOfFirst ? kRoundings : kFewest) * voxels);
 }
 
-FinishedSurface closed_surface(const TriangleMesh& mesh, const FineAndRough& evaluators, const NodeSet& inside,
-                               const SurfaceOptions& options) {
+FinishedSurface closed_surface(const SurfaceInput& input) {
   const DefaultFloatingPoint guard;
   constexpr double kLargestFloat = 0x1p127, kLeastVoxel = 0x1p-80, kLeastCoordinate = 0x1p-1000;
-  const double largest = largest_coordinate(inside.lattice());
-  const double margin = surface_margin(inside.lattice(), options.precision);
-  const bool is_single = options.precision == CoordinatePrecision::kSingle;
+  const Lattice& lattice = input.inside.lattice();
+  const double largest = largest_coordinate(lattice);
+  const double margin = surface_margin(lattice, input.options.precision);
+  const bool is_single = input.options.precision == CoordinatePrecision::kSingle;
   const std::string precision = is_single ? "single precision" : "double precision";
-  const bool fits_float = largest < kLargestFloat && inside.lattice().least_spacing() > kLeastVoxel;
+  const bool fits_float = largest < kLargestFloat && lattice.least_spacing() > kLeastVoxel;
   const bool is_tiny = largest < kLeastCoordinate && !(margin <= kMostOfFirst);
   if (is_tiny || (is_single && !fits_float)) {
     throw LatticeOutOfRange("the lattice is beyond what " + precision + " can hold");
   }
   if (!(margin <= kMostOfFirst))
     throw LatticeTooFine("voxels are too small for " + precision + " beside the largest coordinate");
-  if (is_out_of_scale(inside.lattice(), options)) {
+  if (is_out_of_scale(lattice, input.options)) {
     std::optional<FinishedSurface> surface =
-        made_in_scale(mesh, evaluators, inside, options, [](auto& scaled, auto& in_scale, auto& nodes, auto& as) {
-          return SurfaceMaker(scaled, in_scale, nodes, as).make();
-        });
+        made_in_scale(input, [](const SurfaceInput& scaled) { return SurfaceMaker(scaled).make(); });
     if (surface) return *std::move(surface);
-    if (is_far_too_large(inside.lattice())) {
+    if (is_far_too_large(lattice)) {
       throw LatticeOutOfRange("the mesh has coordinates too small beside the lattice for " + precision);
     }
   }
-  return SurfaceMaker(mesh, evaluators, inside, options).make();
+  return SurfaceMaker(input).make();
 }
 
 // Most of it is due to cells with nodes of both kinds: there are about eight triangles in each before they are merged.

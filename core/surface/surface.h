@@ -28,6 +28,14 @@ struct SurfaceOptions {
   std::function<void(const char*)> at_stage{};
 };
 
+// What a surface is made of, which must stay meanwhile.
+struct SurfaceInput {
+  const TriangleMesh& mesh;
+  FineAndRough evaluators;  // of the mesh
+  const NodeSet& inside;
+  const SurfaceOptions& options;
+};
+
 // What else there is to know of a surface whose faces are the mesh's own, or parts of these.
 struct OwnFaces {
   // Of each triangle of the mesh whether all of it was part of the surface, until faces of a plane were merged. Empty
@@ -76,8 +84,7 @@ class LatticeOutOfRange : public std::runtime_error {
 // to its middle. The same for any number of threads. Preconditions: !inside.empty(), !inside.reaches_border();
 // `mesh` is welded and its used vertices are finite. Throws SurfaceFailure, LatticeTooFine,
 // LatticeOutOfRange, std::length_error for more than 2^31 - 1 faces.
-[[nodiscard]] FinishedSurface closed_surface(const TriangleMesh& mesh, const FineAndRough& evaluators,
-                                             const NodeSet& inside, const SurfaceOptions& options);
+[[nodiscard]] FinishedSurface closed_surface(const SurfaceInput& input);
 
 // The margin that a lattice is given at first, as a fraction of a voxel.
 [[nodiscard]] double surface_margin(const Lattice& lattice, CoordinatePrecision precision);

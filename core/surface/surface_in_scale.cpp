@@ -11,8 +11,7 @@ namespace {
 
 int exponent_of(const Lattice& lattice) { return std::ilogb(largest_coordinate(lattice)); }
 
-// What the surface is made of.
-struct SurfaceInput {
+struct ScaledInput {
   TriangleMesh mesh;
   NodeSet inside;
   SurfaceOptions options;
@@ -52,26 +51,25 @@ bool is_far_too_large(const Lattice& lattice) {
   return exponent_of(lattice) > kMost;
 }
 
-std::optional<FinishedSurface> made_in_scale(const TriangleMesh& mesh, const FineAndRough& evaluators,
-                                             const NodeSet& inside, const SurfaceOptions& options,
-                                             const SurfaceOf& make) {
-  const int exponent = exponent_of(inside.lattice());
+std::optional<FinishedSurface> made_in_scale(
+    const SurfaceInput& input, const std::function<std::optional<FinishedSurface>(const SurfaceInput&)>& make) {
+  const int exponent = exponent_of(input.inside.lattice());
   const PowerOfTwo back(exponent), in_scale(-exponent);
-  SurfaceInput input{mesh, inside, options};
-  if (!input.scale(in_scale)) return std::nullopt;
+  ScaledInput scaled{input.mesh, input.inside, input.options};
+  if (!scaled.scale(in_scale)) return std::nullopt;
   const auto in_this = [&](const WindingNumberEvaluator& evaluator) {
-    return WindingNumberEvaluator(input.mesh, {.accuracy = evaluator.asked_accuracy()});
+    return WindingNumberEvaluator(scaled.mesh, {.accuracy = evaluator.asked_accuracy()});
   };
-  const WindingNumberEvaluator fine = in_this(evaluators.fine);
+  const WindingNumberEvaluator fine = in_this(input.evaluators.fine);
   std::optional<WindingNumberEvaluator> rough;
-  if (&evaluators.rough != &evaluators.fine) rough = in_this(evaluators.rough);
+  if (&input.evaluators.rough != &input.evaluators.fine) rough = in_this(input.evaluators.rough);
   std::optional<FinishedSurface> finished =
-      make(input.mesh, FineAndRough(fine, rough ? *rough : fine), input.inside, input.options);
+      make({scaled.mesh, FineAndRough(fine, rough ? *rough : fine), scaled.inside, scaled.options});
   if (!finished) return std::nullopt;
   for (Vec3& v : finished->surface.mesh.vertices) {
-    const Vec3 scaled = v;
+    const Vec3 made = v;
     v = back(v);
-    if (in_scale(v) != scaled) return std::nullopt;
+    if (in_scale(v) != made) return std::nullopt;
   }
   return finished;
 }

@@ -4,9 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "core/cells/edge_roots.h"
-#include "core/cells/node_set.h"
-#include "core/data/triangle_mesh.h"
+#include "core/data/lattice.h"
 #include "core/surface/surface.h"
 
 namespace raycone {
@@ -17,14 +15,10 @@ namespace raycone {
 // Whether products of eight lengths, more than there are anywhere, could overflow.
 [[nodiscard]] bool is_far_too_large(const Lattice& lattice);
 
-using SurfaceOf = std::function<std::optional<FinishedSurface>(const TriangleMesh& mesh, const FineAndRough& evaluators,
-                                                               const NodeSet& inside, const SurfaceOptions& options)>;
-
-// What `make` makes of all that in another scale, by a power of two, in which coordinates are near 1; back in this one.
-// Its evaluators are new ones, made with the accuracies of these. None where it makes none, or where another scale
+// What `make` makes of the input in another scale, by a power of two, in which coordinates are near 1; back in this
+// one. Its evaluators are new ones, made with the accuracies of these. None where it makes none, or where another scale
 // costs a number bits.
-[[nodiscard]] std::optional<FinishedSurface> made_in_scale(const TriangleMesh& mesh, const FineAndRough& evaluators,
-                                                           const NodeSet& inside, const SurfaceOptions& options,
-                                                           const SurfaceOf& make);
+[[nodiscard]] std::optional<FinishedSurface> made_in_scale(
+    const SurfaceInput& input, const std::function<std::optional<FinishedSurface>(const SurfaceInput&)>& make);
 
 }  // namespace raycone

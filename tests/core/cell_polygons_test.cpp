@@ -424,8 +424,8 @@ TEST(CellPolygons, AreThereWhereNothingIsMerged) {
   const TriangleMesh mesh = test::box_mesh({0.1, 0.1, 0.1}, {1.0, 0.9, 0.8});
   const Cells cells(mesh, lattice_around(mesh, 0.13));
   const WindingNumberEvaluator evaluator(mesh);
-  const FinishedSurface made = closed_surface(mesh, evaluator, cells.nodes, {.rule = {}, .merge_planes = false});
-  const FinishedSurface merged = closed_surface(mesh, evaluator, cells.nodes, {.rule = {}});
+  const FinishedSurface made = closed_surface({mesh, evaluator, cells.nodes, {.rule = {}, .merge_planes = false}});
+  const FinishedSurface merged = closed_surface({mesh, evaluator, cells.nodes, {.rule = {}}});
   EXPECT_LT(made.surface.sources.size(), cells.contoured(ContourCells::kTetrahedra).surface.sources.size());
   EXPECT_GT(made.surface.sources.size(), 10 * merged.surface.sources.size());
   for (const Vec3& corner : merged.surface.mesh.vertices) {

@@ -89,7 +89,7 @@ TEST(MeshAsSurface, HasSamplesBesidePartsThatTouch) {
     const auto count = static_cast<std::int64_t>(6.5 / voxel);
     const Lattice lattice{{0, 0, 0}, {voxel, voxel, voxel}, {-2, -2, -2}, {count, count, count}};
     const NodeSet inside = nodes_inside(evaluator, odd, lattice);
-    const std::optional<FinishedSurface> made = mesh_as_surface(boxes, evaluator, inside, {.rule = odd});
+    const std::optional<FinishedSurface> made = mesh_as_surface({boxes, evaluator, inside, {.rule = odd}});
     ASSERT_TRUE(made) << voxel;
     EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
     EXPECT_NEAR(volume_of(made->surface.mesh), 18.0, 1e-7);

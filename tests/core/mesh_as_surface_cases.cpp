@@ -48,7 +48,7 @@ std::optional<FinishedSurface> kept(const TriangleMesh& mesh, double side, const
   EXPECT_FALSE(inside.empty());
   EXPECT_FALSE(inside.reaches_border());
   const WindingNumberEvaluator evaluator(mesh);
-  std::optional<FinishedSurface> made = mesh_as_surface(mesh, evaluator, inside, options);
+  std::optional<FinishedSurface> made = mesh_as_surface({mesh, evaluator, inside, options});
   if (made) {
     EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
     std::vector<Vec3> rounded = made->surface.mesh.vertices;

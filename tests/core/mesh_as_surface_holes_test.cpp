@@ -101,7 +101,7 @@ TEST(MeshAsSurface, HasSamplesInTheHolesPlane) {
       if (sign < 0.0) box = test::reversed(box);
       const WindingNumberEvaluator evaluator(box);
       const NodeSet inside = nodes_inside(evaluator, Rule{}, lattice);
-      const std::optional<FinishedSurface> made = mesh_as_surface(box, evaluator, inside, {});
+      const std::optional<FinishedSurface> made = mesh_as_surface({box, evaluator, inside, {}});
       ASSERT_TRUE(made) << axis << ' ' << sign;
       EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
       EXPECT_LE(made->surface.mesh.triangles.size(), 20U);
@@ -177,7 +177,7 @@ TEST(MeshAsSurface, HasIslandsAroundNodesBehindSheets) {
   const WindingNumberEvaluator evaluator(mesh);
   const NodeSet inside = nodes_inside(evaluator, {}, lattice);
   ASSERT_TRUE(inside.holds(4, 4, 10));
-  const std::optional<FinishedSurface> made = mesh_as_surface(mesh, evaluator, inside, {});
+  const std::optional<FinishedSurface> made = mesh_as_surface({mesh, evaluator, inside, {}});
   ASSERT_TRUE(made);
   EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
   EXPECT_EQ(components_of(made->surface.mesh).count, 2U);
@@ -198,7 +198,7 @@ TEST(MeshAsSurface, IsTheSameInEveryUnitWithTwoEvaluators) {
     const WindingNumberEvaluator fine(mesh, {.accuracy = {.tolerance = 1e-6, .samples = kPoints, .points = kPoints}});
     const WindingNumberEvaluator rough(mesh, {.accuracy = {.tolerance = 1e-5, .samples = kPoints, .points = kPoints}});
     std::optional<FinishedSurface> surface =
-        mesh_as_surface(mesh, FineAndRough(fine, rough), nodes_inside(rough, {}, lattice), {});
+        mesh_as_surface({mesh, FineAndRough(fine, rough), nodes_inside(rough, {}, lattice), {}});
     return surface ? test::moved(surface->surface.mesh, {1 / unit, 1 / unit, 1 / unit}, {0, 0, 0}) : TriangleMesh();
   };
   const TriangleMesh expected = made(1.0);

@@ -111,7 +111,7 @@ TEST(MeshAsSurface, HasSamplesOnItsFacesOnTheirSides) {
   for (const TriangleMesh& mesh : {box, octahedron}) {
     const WindingNumberEvaluator evaluator(mesh);
     const NodeSet inside = nodes_inside(evaluator, Rule{}, lattice);
-    const std::optional<FinishedSurface> made = mesh_as_surface(mesh, evaluator, inside, {});
+    const std::optional<FinishedSurface> made = mesh_as_surface({mesh, evaluator, inside, {}});
     ASSERT_TRUE(made);
     EXPECT_TRUE(faults_of(made->surface.mesh, inside).none());
     EXPECT_EQ(made->surface.mesh.triangles.size(), mesh.triangles.size());
@@ -137,11 +137,11 @@ TEST(MeshAsSurface, IsNoneWithOtherNodes) {
   const TriangleMesh box = turned(test::box_mesh({0, 0, 0}, {1, 1, 1}));
   NodeSet inside = nodes_of(box, 12);
   const WindingNumberEvaluator evaluator(box);
-  ASSERT_TRUE(mesh_as_surface(box, evaluator, inside, {}));
+  ASSERT_TRUE(mesh_as_surface({box, evaluator, inside, {}}));
   NodeSet one(inside.lattice());
   one.insert(2, 2, 2);
   inside.flip(one);
-  EXPECT_FALSE(mesh_as_surface(box, evaluator, inside, {}));
+  EXPECT_FALSE(mesh_as_surface({box, evaluator, inside, {}}));
 }
 
 TEST(MeshAsSurface, IsNoneOfFineMeshes) {

@@ -53,11 +53,11 @@ TEST(SimplifiedSurface, IsWithinTheDistanceBothWaysWithAllNodesOnTheirSides) {
   const WindingNumberEvaluator evaluator(mesh);
   const NodeSet inside = nodes_inside(evaluator, {}, lattice_around_sphere(14));
   SurfaceOptions options;
-  const SurfaceMesh whole_surface = closed_surface(mesh, evaluator, inside, options).surface;
+  const SurfaceMesh whole_surface = closed_surface({mesh, evaluator, inside, options}).surface;
   std::size_t before = whole_surface.mesh.triangles.size();
   for (const double most : {0.005, 0.02, 0.1}) {
     options.simplify = most;
-    const SurfaceMesh surface = closed_surface(mesh, evaluator, inside, options).surface;
+    const SurfaceMesh surface = closed_surface({mesh, evaluator, inside, options}).surface;
     EXPECT_LT(surface.mesh.triangles.size(), before);
     before = surface.mesh.triangles.size();
     EXPECT_TRUE(faults_of(surface.mesh, inside).none());
@@ -154,7 +154,7 @@ TEST(SimplifiedSurface, LeavesWhatMergingMayMove) {
   for (const double margins : {17.0, 20.9, 21.1}) {
     SurfaceOptions options;
     options.simplify = margins * margin;
-    EXPECT_EQ(closed_surface(mesh, evaluator, inside, options).bound_too_small, margins < 21.0) << margins;
+    EXPECT_EQ(closed_surface({mesh, evaluator, inside, options}).bound_too_small, margins < 21.0) << margins;
   }
 }
 
@@ -175,10 +175,10 @@ Moved moved_by(const TriangleMesh& mesh, double simplify) {
   const NodeSet inside = nodes_inside(evaluator, {}, lattice);
   SurfaceOptions options;
   options.merge_planes = false;
-  const TriangleMesh all = closed_surface(mesh, evaluator, inside, options).surface.mesh;
+  const TriangleMesh all = closed_surface({mesh, evaluator, inside, options}).surface.mesh;
   options.merge_planes = true;
   options.simplify = simplify;
-  const FinishedSurface fewer = closed_surface(mesh, evaluator, inside, options);
+  const FinishedSurface fewer = closed_surface({mesh, evaluator, inside, options});
   EXPECT_TRUE(fewer.merged && fewer.simplified);
   EXPECT_LT(fewer.surface.mesh.triangles.size(), all.triangles.size() * 3 / 4);
   return {plane_tolerance(mesh, lattice),
@@ -242,7 +242,7 @@ TEST(SimplifiedSurface, TakesNoLongerForDistancesBeyondAllSizes) {
   SurfaceOptions options;
   for (const double most : {10.0, 1e3, 1e6, 1e300}) {
     options.simplify = most;
-    const FinishedSurface finished = closed_surface(mesh, evaluator, inside, options);
+    const FinishedSurface finished = closed_surface({mesh, evaluator, inside, options});
     EXPECT_TRUE(faults_of(finished.surface.mesh, inside).none()) << most;
   }
 }
@@ -273,7 +273,7 @@ TEST(ThickSurface, IsAtItsDistanceOrWhereTheRuleEnds) {
   SurfaceOptions options;
   options.thickness = 0.17;
   insert_near(inside, distance, options.thickness);
-  const SurfaceMesh surface = closed_surface(mesh, evaluator, inside, options).surface;
+  const SurfaceMesh surface = closed_surface({mesh, evaluator, inside, options}).surface;
   const std::vector<Vec3>& vertices = surface.mesh.vertices;
   std::vector<double> distances(vertices.size()), w(vertices.size());
   distance.evaluate(vertices, distances);

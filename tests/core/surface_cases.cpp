@@ -118,7 +118,7 @@ Made surface_of(const TriangleMesh& mesh, std::int64_t side, const SurfaceOption
   const Lattice lattice{box.lower, {h, h, h}, {-1, -1, -1}, {side + 1, side + 1, side + 1}};
   const WindingNumberEvaluator evaluator(mesh);
   const NodeSet nodes = nodes_inside(evaluator, options.rule, lattice);
-  Made made{closed_surface(mesh, evaluator, nodes, options).surface, lattice};
+  Made made{closed_surface({mesh, evaluator, nodes, options}).surface, lattice};
   EXPECT_TRUE(faults_of(made.surface.mesh, nodes).none());
   return made;
 }

@@ -150,7 +150,8 @@ TEST(Surface, KeepsEdgesThatPassBetweenOutsideNodes) {
     const auto resolved = std::ranges::count_if(edges, [&](const Vec3& p) { return is_resolved(p, nodes); });
     EXPECT_LT(resolved, 0.9 * static_cast<double>(edges.size()));  // what tetrahedra alone can keep
     for (const bool merged : {true, false}) {
-      const SurfaceMesh surface = closed_surface(mesh, evaluator, nodes, {.rule = {}, .merge_planes = merged}).surface;
+      const SurfaceMesh surface =
+          closed_surface({mesh, evaluator, nodes, {.rule = {}, .merge_planes = merged}}).surface;
       EXPECT_TRUE(faults_of(surface.mesh, nodes).none());
       EXPECT_EQ(part_at(edges, surface.mesh, h), 1.0);
       if (merged) {
@@ -410,7 +411,7 @@ TEST(Surface, IsMergedWhereFaultsMoveAlongAnEdge) {
   const Lattice lattice{{0, 0, 0}, {h, h, h}, {-3, -3, -3}, {43, 43, 43}};
   const WindingNumberEvaluator evaluator(box);
   const NodeSet nodes = nodes_inside(evaluator, Rule{}, lattice);
-  const FinishedSurface made = closed_surface(box, evaluator, nodes, {});
+  const FinishedSurface made = closed_surface({box, evaluator, nodes, {}});
   EXPECT_TRUE(made.merged);
   EXPECT_TRUE(faults_of(made.surface.mesh, nodes).none());
   EXPECT_LT(made.surface.mesh.triangles.size(), 3000U);
@@ -569,7 +570,7 @@ TEST(Surface, SimplifiedFacesWithASourceAreNearIt) {
     options.simplify = simplify;
     const auto [surface, lattice] = surface_of(sieve, 20, options);
     const NodeSet inside = nodes_inside(WindingNumberEvaluator(sieve), Rule{}, lattice);
-    const std::optional<FinishedSurface> own = mesh_as_surface(sieve, WindingNumberEvaluator(sieve), inside, options);
+    const std::optional<FinishedSurface> own = mesh_as_surface({sieve, WindingNumberEvaluator(sieve), inside, options});
     ASSERT_TRUE(own);
     for (const SurfaceMesh* made : {&surface, &own->surface}) {
       EXPECT_GT(std::ranges::count(made->sources, kHole), 5) << simplify;

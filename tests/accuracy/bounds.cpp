@@ -30,6 +30,7 @@
 #include "tests/support/diagnosed.h"
 #include "tests/support/differences.h"
 #include "tests/support/direct_winding_number.h"
+#include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -230,13 +231,9 @@ Sampled sampled(const TriangleMesh& mesh, Engine engine, double tolerance, std::
       box.lower - 0.1 * size, (1.2 / static_cast<double>(side - 1)) * size, {0, 0, 0}, {side, side, side}};
   const bool on_lattice = engine == Engine::kBlocksOfLattices;
   const std::size_t n = on_lattice ? static_cast<std::size_t>(whole(lattice).size()) : count;
-  std::vector<Vec3> points(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto at = static_cast<std::int64_t>(i);
-    points[i] = on_lattice ? Vec3{lattice.coordinate(0, at % side), lattice.coordinate(1, at / side % side),
-                                  lattice.coordinate(2, at / side / side)}
-                           : test::uniform_point(random, {box.lower - 0.1 * size, box.upper + 0.1 * size});
-  }
+  std::vector<Vec3> points = on_lattice ? test::samples_of(lattice) : std::vector<Vec3>();
+  while (points.size() < n)
+    points.push_back(test::uniform_point(random, {box.lower - 0.1 * size, box.upper + 0.1 * size}));
   const auto samples = static_cast<double>(n);
   const WindingNumberEvaluator evaluator(
       mesh, {.summation = engine == Engine::kFarField ? Summation::kFarField : Summation::kBlocks,

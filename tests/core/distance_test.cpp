@@ -12,26 +12,17 @@
 #include "core/data/distance_blocks.h"
 #include "core/distance/triangle_distance.h"
 #include "core/exact/direct_distance.h"
+#include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
 
+using test::samples_of;
+
 Lattice unit_lattice(std::int64_t samples) {
   const double spacing = 1.0 / static_cast<double>(samples - 1);
   return {{0, 0, 0}, {spacing, spacing, spacing}, {-2, -2, -2}, {samples + 4, samples + 4, samples + 4}};
-}
-
-std::vector<Vec3> samples_of(const Lattice& lattice, const LatticeBlock& block) {
-  std::vector<Vec3> points;
-  for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
-    for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
-      for (std::int64_t i = block.first[0]; i < block.first[0] + block.counts[0]; ++i) {
-        points.push_back({lattice.coordinate(0, i), lattice.coordinate(1, j), lattice.coordinate(2, k)});
-      }
-    }
-  }
-  return points;
 }
 
 std::vector<double> band_of(const DistanceEvaluator& distance, const Lattice& lattice, const LatticeBlock& block,
@@ -173,7 +164,7 @@ TEST(Distance, OfManyPointsIsThatOfFew) {
 // Such needles have no direction that could be trusted. With one triangle beside them that has.
 TEST(Distance, OfSamplesNextToNeedlesIsThatOfPoints) {
   const Lattice lattice{{0.05, -0.1, 0.0}, {0.05, 0.04, 0.045}, {-4, -4, -4}, {23, 20, 25}};
-  const std::vector<Vec3> points = samples_of(lattice, whole(lattice));
+  const std::vector<Vec3> points = samples_of(lattice);
   for (const std::uint32_t segments : {60U, 3000U, 40000U, 500000U}) {
     TriangleMesh mesh = needles_of_cone(segments);
     for (const bool with_another : {false, true}) {
@@ -203,7 +194,7 @@ TEST(Distance, OfSamplesIsThatOfTheOracleInTheBand) {
   for (const double voxels : {0.5, 1.0, 3.0, 100.0}) {
     const double band = voxels * lattice.spacing.x;
     const std::vector<double> distances = band_of(DistanceEvaluator(mesh), lattice, whole(lattice), band);
-    const std::vector<Vec3> points = samples_of(lattice, whole(lattice));
+    const std::vector<Vec3> points = samples_of(lattice);
     for (std::size_t n = 0; n < points.size(); ++n) {
       const double expected = static_cast<double>(direct_distance(mesh, points[n]));
       ASSERT_NEAR(distances[n], std::min(expected, band), 1e-13) << voxels << ' ' << n;
@@ -219,7 +210,7 @@ TEST(Distance, OfSamplesAndPointsAgreeBitByBit) {
     const Lattice lattice = unit_lattice(40);
     const double band = 2.5 * lattice.spacing.x;
     const std::vector<double> samples = band_of(distance, lattice, whole(lattice), band);
-    const std::vector<double> points = at_points(distance, samples_of(lattice, whole(lattice)));
+    const std::vector<double> points = at_points(distance, samples_of(lattice));
     std::size_t in_band = 0;
     for (std::size_t n = 0; n < samples.size(); ++n) {
       ASSERT_EQ(samples[n], std::min(points[n], band)) << n;
@@ -260,7 +251,7 @@ TriangleMesh fine_cube(double lower, double upper, int cells) {
 // The samples of the lattice are the points' to the bit, whatever the band. Returns how many lie on the surface.
 int expect_points_bit_by_bit(const TriangleMesh& mesh, const Lattice& lattice) {
   const DistanceEvaluator distance(mesh);
-  const std::vector<double> points = at_points(distance, samples_of(lattice, whole(lattice)));
+  const std::vector<double> points = at_points(distance, samples_of(lattice));
   for (const double voxels : {1e-30, 0.5, 1.0, 3.0, 1e30}) {
     const double band = voxels * lattice.spacing.x;
     const std::vector<double> samples = band_of(distance, lattice, whole(lattice), band);
@@ -292,7 +283,7 @@ TEST(Distance, OfTheSidesOfACubeIsZero) {
   const double h = 1.0 / 45;
   const Lattice lattice{{0, 0, 0}, {h, h, h}, {-4, -4, -4}, {54, 54, 54}};
   const std::vector<double> distances = band_of(distance, lattice, whole(lattice), 3 * h);
-  const std::vector<Vec3> points = samples_of(lattice, whole(lattice));
+  const std::vector<Vec3> points = samples_of(lattice);
   int on_sides = 0;
   for (std::size_t n = 0; n < points.size(); ++n) {
     const auto [least, most] = std::minmax({points[n].x, points[n].y, points[n].z});
@@ -315,7 +306,7 @@ TEST(Distance, OfSamplesFarAway) {
         const Lattice lattice{{0, 0, 0}, {h, h, h}, {first, -1, -1}, {3, 3, 3}};
         expect_points_bit_by_bit(mesh, lattice);
         const std::vector<double> distances = band_of(DistanceEvaluator(mesh), lattice, whole(lattice), kEverywhere);
-        const std::vector<Vec3> points = samples_of(lattice, whole(lattice));
+        const std::vector<Vec3> points = samples_of(lattice);
         for (std::size_t n = 0; n < points.size(); ++n) {
           const double expected = static_cast<double>(direct_distance(mesh, points[n]));
           ASSERT_LE(std::abs(distances[n] - expected), 1e-12 * expected) << size << ' ' << reach << ' ' << n;

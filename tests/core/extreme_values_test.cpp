@@ -12,6 +12,7 @@
 #include "core/evaluation/winding_number.h"
 #include "core/exact/direct_sum.h"
 #include "core/mesh/weld.h"
+#include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -265,11 +266,7 @@ TEST(ExtremeValues, DoNotDependOnSlabsThatHoldMinuteCoordinates) {
           EXPECT_EQ(bits(in_slabs(evaluator, lattice, cut, 1)), bits(expected))
               << size << " axis " << axis << ' ' << cut;
         }
-        std::vector<Vec3> points;
-        for (std::int64_t n = 0; n < whole(lattice).size(); ++n) {
-          points.push_back({lattice.coordinate(0, n % 5 - 2), lattice.coordinate(1, n / 5 % 6 - 3),
-                            lattice.coordinate(2, n / 30 - 2)});
-        }
+        const std::vector<Vec3> points = test::samples_of(lattice);
         std::vector<double> at_points(points.size());
         evaluator.evaluate(points, at_points);
         EXPECT_EQ(bits(at_points), bits(expected)) << size << " axis " << axis;

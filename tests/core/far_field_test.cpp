@@ -11,6 +11,7 @@
 #include "tests/support/diagnosed.h"
 #include "tests/support/differences.h"
 #include "tests/support/direct_winding_number.h"
+#include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -88,13 +89,7 @@ TEST(FarField, GivesAQueryTheSameBitsAnywhere) {
   lattice.spacing = {0.25, 0.25, 0.25};
   lattice.index_min = {-5, -5, -6};
   lattice.counts = {11, 10, 13};
-  std::vector<Vec3> points;
-  for (std::int64_t k = -6; k < 7; ++k) {
-    for (std::int64_t j = -5; j < 5; ++j) {
-      for (std::int64_t i = -5; i < 6; ++i)
-        points.push_back({lattice.coordinate(0, i), lattice.coordinate(1, j), lattice.coordinate(2, k)});
-    }
-  }
+  const std::vector<Vec3> points = test::samples_of(lattice);
   for (const TriangleMesh& mesh : open_meshes()) {
     const std::vector<double> expected = values_of(evaluator_of(mesh, 1e-7), points);
     for (const SimdLevel level : {SimdLevel::kBest, SimdLevel::kSse4, SimdLevel::kAvx2}) {

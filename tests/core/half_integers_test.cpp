@@ -11,6 +11,7 @@
 #include "core/evaluation/winding_number.h"
 #include "core/exact/direct_sum.h"
 #include "core/mesh/weld.h"
+#include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -117,14 +118,9 @@ TEST(HalfIntegers, AreExactOnLatticesAsAtPoints) {
   for (const Symmetry& symmetry : symmetries()) {
     const TriangleMesh mesh = transformed(upright, symmetry);
     const Lattice lattice{{0, 0, 0}, {0.125, 0.125, 0.125}, {-4, -4, -4}, {9, 9, 9}};
-    std::vector<Vec3> points;
-    for (std::int64_t n = 0; n < 729; ++n) {
-      points.push_back(
-          {lattice.coordinate(0, n % 9 - 4), lattice.coordinate(1, n / 9 % 9 - 4), lattice.coordinate(2, n / 81 - 4)});
-    }
     std::vector<double> values(729);
     WindingNumberEvaluator(mesh).evaluate(lattice, whole(lattice), values);
-    EXPECT_EQ(evaluate(mesh, points), values);
+    EXPECT_EQ(evaluate(mesh, test::samples_of(lattice)), values);
     for (int i = -4; i <= 4; ++i) {
       for (int j = -4; j <= 4; ++j) {
         const Vec3 q = symmetry({i / 8.0, j / 8.0, 0});

@@ -14,6 +14,7 @@
 #include "core/mesh/weld.h"
 #include "tests/support/diagnosed.h"
 #include "tests/support/direct_winding_number.h"
+#include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -166,15 +167,7 @@ TriangleMesh plate(int n) {
 }
 
 Diagnosed at_points(const WindingNumberEvaluator& evaluator, const Lattice& lattice) {
-  std::vector<Vec3> points;
-  for (std::int64_t k = lattice.index_min[2]; k <= lattice.index_max(2); ++k) {
-    for (std::int64_t j = lattice.index_min[1]; j <= lattice.index_max(1); ++j) {
-      for (std::int64_t i = lattice.index_min[0]; i <= lattice.index_max(0); ++i) {
-        points.push_back({lattice.coordinate(0, i), lattice.coordinate(1, j), lattice.coordinate(2, k)});
-      }
-    }
-  }
-  return test::diagnosed(evaluator, points);
+  return test::diagnosed(evaluator, test::samples_of(lattice));
 }
 
 // Slabs of a thickness across an axis, with diagnostics and without.

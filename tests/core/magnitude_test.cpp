@@ -16,6 +16,7 @@
 #include "core/mesh/weld.h"
 #include "tests/property/check.h"
 #include "tests/support/diagnosed.h"
+#include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -528,11 +529,7 @@ TEST(Magnitude, OfLatticesEqualsThatOfPointsToTheBit) {
         const Vec3 factors = size * anisotropy;
         const TriangleMesh mesh = weld(test::moved(unit, factors, {}), {});
         const Lattice lattice{-0.5 * factors, 0.25 * factors, {0, 0, 0}, {17, 9, 9}};
-        std::vector<Vec3> points;
-        for (std::int64_t i = 0; i < 17 * 9 * 9; ++i) {
-          points.push_back(
-              {lattice.coordinate(0, i % 17), lattice.coordinate(1, i / 17 % 9), lattice.coordinate(2, i / 153)});
-        }
+        const std::vector<Vec3> points = test::samples_of(lattice);
         std::vector<double> at_points(points.size()), on_lattice(points.size());
         const WindingNumberEvaluator evaluator(mesh);
         const Tally a = evaluator.evaluate(points, at_points),

@@ -8,6 +8,7 @@
 #include "core/mesh/weld.h"
 #include "tests/property/check.h"
 #include "tests/support/diagnosed.h"
+#include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -15,6 +16,7 @@ namespace {
 
 using test::Diagnosed;
 using test::Random;
+using test::samples_of;
 
 Diagnosed at_points(const TriangleMesh& mesh, const std::vector<Vec3>& queries, RayEngine engine = RayEngine::kScan) {
   return test::diagnosed(WindingNumberEvaluator(mesh, {.ray_engine = engine}), queries);
@@ -28,18 +30,6 @@ Diagnosed on_lattice(const TriangleMesh& mesh, const Lattice& lattice, RayEngine
 // of edges, or inside faces.
 constexpr Lattice kHalfNodes{{-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}, {0, 0, 0}, {9, 9, 9}};
 
-std::vector<Vec3> points_of(const Lattice& lattice) {
-  std::vector<Vec3> points;
-  for (std::int64_t k = 0; k < lattice.counts[2]; ++k) {
-    for (std::int64_t j = 0; j < lattice.counts[1]; ++j) {
-      for (std::int64_t i = 0; i < lattice.counts[0]; ++i) {
-        points.push_back({lattice.coordinate(0, i), lattice.coordinate(1, j), lattice.coordinate(2, k)});
-      }
-    }
-  }
-  return points;
-}
-
 // Closed, open, and with faces that are duplicated, reversed and of zero area.
 std::vector<TriangleMesh> meshes(Random& random) {
   TriangleMesh cancelling = test::joined(test::random_cells(random, 3), test::lattice_soup(random, 10, 3));
@@ -52,7 +42,7 @@ std::vector<TriangleMesh> meshes(Random& random) {
 
 TEST(OnSurface, IsFlaggedAndHasThePerturbedQuerysValue) {
   Random random(1);
-  const std::vector<Vec3> queries = points_of(kHalfNodes);
+  const std::vector<Vec3> queries = samples_of(kHalfNodes);
   std::vector<Vec3> some;  // the oracle takes milliseconds for each; a step of 4 would leave out all nodes
   for (std::size_t n = 0; n < queries.size(); n += 5) some.push_back(queries[n]);
   for (const TriangleMesh& mesh : meshes(random)) {
@@ -64,7 +54,7 @@ TEST(OnSurface, IsFlaggedAndHasThePerturbedQuerysValue) {
 
 TEST(OnSurface, DoesNotDependOnTheOrderOfFacesAndVertices) {
   Random random(2);
-  const std::vector<Vec3> queries = points_of(kHalfNodes);
+  const std::vector<Vec3> queries = samples_of(kHalfNodes);
   for (const TriangleMesh& mesh : meshes(random)) {
     const Diagnosed points = at_points(mesh, queries), lattice = on_lattice(mesh, kHalfNodes);
     for (int i = 0; i < 5; ++i) {
@@ -77,7 +67,7 @@ TEST(OnSurface, DoesNotDependOnTheOrderOfFacesAndVertices) {
 
 TEST(OnSurface, DoesNotDependOnTheEngineNorOnLatticeOrPoints) {
   Random random(3);
-  const std::vector<Vec3> queries = points_of(kHalfNodes);
+  const std::vector<Vec3> queries = samples_of(kHalfNodes);
   for (const TriangleMesh& mesh : meshes(random)) {
     const Diagnosed expected = at_points(mesh, queries);
     EXPECT_TRUE(at_points(mesh, queries, RayEngine::kEmbree) == expected);
@@ -88,7 +78,7 @@ TEST(OnSurface, DoesNotDependOnTheEngineNorOnLatticeOrPoints) {
 
 TEST(OnSurface, DoesNotDependOnThreads) {
   Random random(4);
-  const std::vector<Vec3> queries = points_of(kHalfNodes);
+  const std::vector<Vec3> queries = samples_of(kHalfNodes);
   for (const TriangleMesh& mesh : meshes(random)) {
     const Diagnosed expected = at_points(mesh, queries);
     for (const int threads : {1, 2, 7}) {
@@ -103,7 +93,7 @@ TEST(OnSurface, DoesNotDependOnThreads) {
 // either sign.
 TEST(OnSurface, DoesNotDependOnHowTheMeshWasStored) {
   Random random(5);
-  const std::vector<Vec3> queries = points_of(kHalfNodes);
+  const std::vector<Vec3> queries = samples_of(kHalfNodes);
   for (const TriangleMesh& mesh : meshes(random)) {
     TriangleMesh soup;
     for (const Triangle& t : mesh.triangles) {
@@ -124,7 +114,7 @@ TEST(OnSurface, DoesNotDependOnHowTheMeshWasStored) {
 
 TEST(OnSurface, AStepAsideChangesTheFlag) {  // negative control: the flags are not all the same
   Random random(6);
-  std::vector<Vec3> queries = points_of(kHalfNodes);
+  std::vector<Vec3> queries = samples_of(kHalfNodes);
   for (Vec3& q : queries) q = q + Vec3{0.1, 0.013, 0.0017};
   for (const TriangleMesh& mesh : meshes(random)) EXPECT_LT(at_points(mesh, queries).tally.on_surface, 20U);
 }

@@ -9,6 +9,7 @@
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/weld.h"
 #include "tests/support/differences.h"
+#include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -66,14 +67,7 @@ TEST(SolidAngles, AreTheSameAtEverySimdLevelAndForPoints) {
     if (!is_available(level)) continue;
     EXPECT_EQ(evaluate(mesh, lattice, Summation::kTriangles, level), expected);
   }
-  std::vector<Vec3> points;
-  for (std::int64_t k = 0; k < 9; ++k) {
-    for (std::int64_t j = 0; j < 9; ++j) {
-      for (std::int64_t i = 0; i < 9; ++i) {
-        points.push_back({lattice.coordinate(0, i - 3), lattice.coordinate(1, j - 3), lattice.coordinate(2, k - 3)});
-      }
-    }
-  }
+  const std::vector<Vec3> points = test::samples_of(lattice);
   std::vector<double> values(points.size());
   WindingNumberEvaluator(mesh, {.summation = Summation::kTriangles}).evaluate(points, values);
   EXPECT_EQ(values, expected);

@@ -12,6 +12,7 @@
 #include "core/mesh/weld.h"
 #include "tests/support/differences.h"
 #include "tests/support/direct_winding_number.h"
+#include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -379,14 +380,7 @@ TEST(WindingNumber, OnLatticesEqualsThatAtTheirPointsToTheBit) {
   Random random(17);
   const TriangleMesh mesh = test::joined(test::open_box(), test::lattice_soup(random, 12, 2));
   const Lattice lattice{{0.1, 0, -0.25}, {0.125, 0.25, 0.17}, {-3, -2, 0}, {70, 9, 7}};
-  std::vector<Vec3> points;
-  for (std::int64_t k = 0; k <= lattice.index_max(2); ++k) {
-    for (std::int64_t j = -2; j <= lattice.index_max(1); ++j) {
-      for (std::int64_t i = -3; i <= lattice.index_max(0); ++i) {
-        points.push_back({lattice.coordinate(0, i), lattice.coordinate(1, j), lattice.coordinate(2, k)});
-      }
-    }
-  }
+  const std::vector<Vec3> points = test::samples_of(lattice);
   const WindingNumberEvaluator evaluator(mesh);
   std::vector<double> at_points(points.size()), on_lattice(points.size());
   const Tally a = evaluator.evaluate(points, at_points);

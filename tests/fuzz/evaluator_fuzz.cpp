@@ -20,6 +20,7 @@
 #include "tests/property/check.h"
 #include "tests/property/check_samples.h"
 #include "tests/property/distance_check.h"
+#include "tests/support/lattice_samples.h"
 
 namespace raycone {
 namespace {
@@ -95,21 +96,6 @@ Lattice any_lattice(Choices& choices) {
   return lattice;
 }
 
-std::vector<Vec3> points_of(const Lattice& lattice) {
-  std::vector<Vec3> points;
-  for (std::int64_t k = 0; k < lattice.counts[2]; ++k) {
-    for (std::int64_t j = 0; j < lattice.counts[1]; ++j) {
-      for (std::int64_t i = 0; i < lattice.counts[0]; ++i) {
-        const auto at = [&](int axis, std::int64_t n) {
-          return lattice.coordinate(axis, lattice.index_min[static_cast<std::size_t>(axis)] + n);
-        };
-        points.push_back({at(0, i), at(1, j), at(2, k)});
-      }
-    }
-  }
-  return points;
-}
-
 [[noreturn]] void report(const TriangleMesh& mesh, const test::Failure& failure) {
   std::fputs(test::describe(mesh, failure).c_str(), stderr);
   std::abort();
@@ -121,7 +107,7 @@ void check_rules(const TriangleMesh& mesh, const Vec3& point, double value) {
 }
 
 void check_lattice(const TriangleMesh& mesh, const Lattice& lattice) {
-  const std::vector<Vec3> points = points_of(lattice);
+  const std::vector<Vec3> points = test::samples_of(lattice);
   std::vector<double> expected(points.size()), values(points.size());
   for (const Summation summation : {Summation::kCone, Summation::kTriangles}) {
     WindingNumberEvaluator(mesh, {.summation = summation}).evaluate(points, expected);
@@ -139,7 +125,7 @@ void check_lattice(const TriangleMesh& mesh, const Lattice& lattice) {
 
 void check_distances(const TriangleMesh& mesh, std::vector<Vec3> points, const Lattice& lattice) {
   test::DistanceCounts counts;
-  const std::vector<Vec3> samples = points_of(lattice);
+  const std::vector<Vec3> samples = test::samples_of(lattice);
   points.insert(points.end(), samples.begin(), samples.end());
   if (const auto failure = test::check_distances(mesh, points, counts)) report(mesh, *failure);
   if (const auto failure = test::check_lattice_distances(mesh, lattice, counts)) report(mesh, *failure);

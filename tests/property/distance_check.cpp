@@ -12,6 +12,7 @@
 #include "core/exact/direct_distance.h"
 #include "core/exact/scale.h"
 #include "core/machine/floating_point.h"
+#include "tests/support/lattice_samples.h"
 
 namespace raycone::test {
 namespace {
@@ -31,18 +32,6 @@ std::string text(double x) {
 }
 
 bool same_bits(double a, double b) { return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b); }
-
-std::vector<Vec3> samples_of(const Lattice& lattice) {
-  std::vector<Vec3> points;
-  for (std::int64_t k = lattice.index_min[2]; k <= lattice.index_max(2); ++k) {
-    for (std::int64_t j = lattice.index_min[1]; j <= lattice.index_max(1); ++j) {
-      for (std::int64_t i = lattice.index_min[0]; i <= lattice.index_max(0); ++i) {
-        points.push_back({lattice.coordinate(0, i), lattice.coordinate(1, j), lattice.coordinate(2, k)});
-      }
-    }
-  }
-  return points;
-}
 
 // The mesh and the lattice as they are searched; no rows where a sample is too far away for that.
 struct Scaled {

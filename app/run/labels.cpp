@@ -11,21 +11,10 @@
 #include "app/process/stopwatch.h"
 #include "app/samples/slabs.h"
 #include "core/data/interval.h"
+#include "core/data/lattice_slabs.h"
 
 namespace raycone {
 namespace {
-
-// The slabs of a block, each of about `samples`.
-template <typename Visit>
-void for_slabs(const LatticeBlock& block, std::int64_t samples, const Visit& visit) {
-  const std::int64_t layers = std::max<std::int64_t>(samples / (block.counts[0] * block.counts[1]), 1);
-  const std::int64_t end = block.first[2] + block.counts[2];
-  LatticeBlock slab = block;
-  for (; slab.first[2] < end; slab.first[2] += layers) {
-    slab.counts[2] = std::min(layers, end - slab.first[2]);
-    visit(slab);
-  }
-}
 
 bool any_inside(std::span<const std::uint8_t> inside) {
   return std::ranges::any_of(inside, [](std::uint8_t flag) { return flag != 0; });
@@ -70,7 +59,7 @@ class LatticeLabels {
     const double left = static_cast<double>(run_.limits().memory()) - memory_in_use();
     FieldSamples samples(options);
     bool found = false;
-    for_slabs(reach, slab_samples(options, kind, left), [&](const LatticeBlock& slab) {
+    for_each_slab(reach, slab_samples(options, kind, left), [&](const LatticeBlock& slab) {
       parts_.count(evaluator.evaluate(lattice_, slab, samples, done_));
       if (!any_inside(flags_of(samples))) return;
       found = true;

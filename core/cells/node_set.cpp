@@ -7,6 +7,7 @@
 #include <numeric>
 #include <span>
 
+#include "core/data/lattice_slabs.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -38,15 +39,6 @@ std::uint64_t word_of(const std::uint8_t* bytes) {
   std::uint64_t word = 0;
   for (unsigned n = 0; n < 64; n += 8) word |= eight_bits(bytes + n) << n;
   return word;
-}
-
-// The layers of a block from one on, as many as take the memory of a slab.
-LatticeBlock slab_of(const LatticeBlock& block, std::int64_t first_layer) {
-  const std::int64_t layers = std::max<std::int64_t>(1, kSlabNodes / (block.counts[0] * block.counts[1]));
-  LatticeBlock slab = block;
-  slab.first[2] += first_layer;
-  slab.counts[2] = std::min(layers, block.counts[2] - first_layer);
-  return slab;
 }
 
 }  // namespace
@@ -107,8 +99,7 @@ NodeSet nodes_inside_of(const LatticeBlock& block, const WindingNumberEvaluator&
                         const Lattice& lattice, std::atomic<std::uint64_t>* done, Tally* tally) {
   NodeSet nodes(lattice);
   std::vector<std::uint8_t> sides;
-  for (std::int64_t layer = 0; layer < block.counts[2];) {
-    const LatticeBlock slab = slab_of(block, layer);
+  for_each_slab(block, kSlabNodes, [&](const LatticeBlock& slab) {
     sides.resize(static_cast<std::size_t>(slab.size()));
     const Tally of_slab = evaluator.evaluate_sides(rule, lattice, slab, sides, done);
     if (tally) *tally += of_slab;
@@ -121,8 +112,7 @@ NodeSet nodes_inside_of(const LatticeBlock& block, const WindingNumberEvaluator&
         nodes.set_row(first_j + row % slab.counts[1], first_k + row / slab.counts[1], of_row);
       }
     });
-    layer += slab.counts[2];
-  }
+  });
   return nodes;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "core/data/lattice_slabs.h"
 #include "core/machine/threads.h"
 
 namespace raycone {
@@ -61,13 +62,9 @@ void insert_near(NodeSet& nodes, const DistanceEvaluator& distance, double thick
   constexpr std::int64_t kNodesAtOnce = std::int64_t{1} << 20;
   const Lattice& lattice = nodes.lattice();
   const double band = 2.0 * thickness;  // distances are cut off there
-  const std::int64_t layer_nodes = lattice.counts[0] * lattice.counts[1];
-  const std::int64_t layers = std::max<std::int64_t>(1, kNodesAtOnce / layer_nodes);
   std::vector<double> distances;
-  for (std::int64_t layer = 0; layer < lattice.counts[2]; layer += layers) {
-    LatticeBlock slab = whole(lattice);
-    slab.first[2] += layer;
-    slab.counts[2] = std::min(layers, lattice.counts[2] - layer);
+  for_each_slab(whole(lattice), kNodesAtOnce, [&](const LatticeBlock& slab) {
+    const std::int64_t layer = slab.first[2] - lattice.index_min[2];
     distances.resize(static_cast<std::size_t>(slab.size()));
     distance.evaluate(lattice, slab, band, distances);
     for (std::int64_t n = 0; n < slab.size(); ++n) {
@@ -75,7 +72,7 @@ void insert_near(NodeSet& nodes, const DistanceEvaluator& distance, double thick
       const std::int64_t row = n / slab.counts[0];
       nodes.insert(n % slab.counts[0], row % slab.counts[1], layer + row / slab.counts[1]);
     }
-  }
+  });
 }
 
 std::vector<EdgePoint> thick_edge_points(const RuleAlong& rule, const DistanceEvaluator& distance, double thickness,

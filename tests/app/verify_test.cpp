@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/process/messages.h"
+#include "core/data/lattice_slabs.h"
 #include "core/machine/threads.h"
 #include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
@@ -99,9 +100,7 @@ TEST(SampleDraw, DependsNotOnTheSlabsOfALattice) {
     for (const std::int64_t thickness : {1, 4, 11}) {
       SampleDraw draw(50);
       for (std::int64_t done = 0; done < lattice.counts[axis]; done += thickness) {
-        LatticeBlock slab = whole(lattice);
-        slab.first[axis] += done;
-        slab.counts[axis] = std::min(thickness, lattice.counts[axis] - done);
+        const LatticeBlock slab = slab_of(whole(lattice), axis, done, thickness);
         std::vector<double> values;  // each is its sample's position in the file of a CSV
         for (std::int64_t k = 0; k < slab.counts[2]; ++k) {
           for (std::int64_t j = 0; j < slab.counts[1]; ++j) {

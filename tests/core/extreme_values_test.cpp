@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/data/lattice_slabs.h"
 #include "core/evaluation/winding_number.h"
 #include "core/exact/direct_sum.h"
 #include "core/mesh/weld.h"
@@ -199,9 +200,7 @@ std::vector<double> in_slabs(const WindingNumberEvaluator& evaluator, const Latt
   const auto a = static_cast<std::size_t>(axis);
   std::vector<double> values(static_cast<std::size_t>(whole(lattice).size()));
   for (std::int64_t begin = 0; begin < lattice.counts[a]; begin += thickness) {
-    LatticeBlock slab = whole(lattice);
-    slab.first[a] += begin;
-    slab.counts[a] = std::min(thickness, lattice.counts[a] - begin);
+    const LatticeBlock slab = slab_of(whole(lattice), a, begin, thickness);
     std::vector<double> part(static_cast<std::size_t>(slab.size()));
     evaluator.evaluate(lattice, slab, part);
     const double* value = part.data();

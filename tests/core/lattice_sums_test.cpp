@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/crossings/slab_order.h"
+#include "core/data/lattice_slabs.h"
 #include "core/evaluation/winding_number.h"
 #include "core/machine/threads.h"
 #include "core/mesh/exterior_edges.h"
@@ -175,9 +176,7 @@ void expect_slabs(const WindingNumberEvaluator& evaluator, const Lattice& lattic
                   std::int64_t thickness, const Diagnosed& expected) {
   Tally tally;
   for (std::int64_t done = 0; done < lattice.counts[axis]; done += thickness) {
-    LatticeBlock slab = whole(lattice);
-    slab.first[axis] += done;
-    slab.counts[axis] = std::min(thickness, lattice.counts[axis] - done);
+    const LatticeBlock slab = slab_of(whole(lattice), axis, done, thickness);
     const Diagnosed with = test::diagnosed(evaluator, lattice, slab);
     tally += with.tally;
     std::vector<double> without(with.values.size());

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/data/lattice_slabs.h"
 #include "io/fields/field_writer.h"
 #include "io/vdb/read_vdb.h"
 #include "tests/support/output_checks.h"
@@ -54,9 +55,7 @@ void write_vdb(const std::string& path, const DiagnosedField& field, std::int64_
   description.mesh = "bunny.obj";
   const auto writer = make_lattice_writer(FieldFormat::kVdb, output, field.lattice, description);
   for (std::int64_t done = 0; done < field.lattice.counts[2]; done += thickness) {
-    LatticeBlock slab = whole(field.lattice);
-    slab.first[2] += done;
-    slab.counts[2] = std::min(thickness, field.lattice.counts[2] - done);
+    const LatticeBlock slab = slab_of(whole(field.lattice), 2, done, thickness);
     const auto of_slab = [&](const auto& numbers) { return test::part(field.lattice, numbers, slab); };
     const auto values = of_slab(field.values), error_bound = of_slab(field.error_bound);
     const auto crossings = of_slab(field.crossings), degenerate = of_slab(field.degenerate);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/data/lattice_slabs.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
 #include "tests/support/output_checks.h"
@@ -66,9 +67,7 @@ void write_vti(const std::string& path, const OutputDescription& description) {
     }
     if (layer == 0) w[0] = -0.0;
     const std::vector<std::int64_t> counts(12, 9007199254740993);
-    LatticeBlock slab = whole(small_lattice());
-    slab.first[2] += layer;
-    slab.counts[2] = 1;
+    const LatticeBlock slab = slab_of(whole(small_lattice()), 2, layer, 1);
     writer->write(slab, std::vector<FieldValues>{
                             std::span<const double>(w), std::span<const std::uint8_t>(inside), std::span(counts),
                             std::span(counts), std::span<const std::uint8_t>(inside), std::span<const double>(bounds)});

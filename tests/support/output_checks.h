@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "core/data/lattice_slabs.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
 #include "tests/support/run_command.h"
@@ -84,9 +84,7 @@ inline void write_in_slabs(FieldFormat format, OutputFile& output, const Lattice
   const auto writer = make_lattice_writer(format, output, lattice, description);
   const auto axis = static_cast<std::size_t>(writer->slab_axis());
   for (std::int64_t done = 0; done < lattice.counts[axis]; done += thickness) {
-    LatticeBlock slab = whole(lattice);
-    slab.first[axis] += done;
-    slab.counts[axis] = std::min(thickness, lattice.counts[axis] - done);
+    const LatticeBlock slab = slab_of(whole(lattice), axis, done, thickness);
     const std::vector<double> in_slab = part(lattice, values, slab);
     const FieldValues field = std::span(in_slab);
     writer->write(slab, {&field, 1});

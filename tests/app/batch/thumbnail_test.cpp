@@ -1,4 +1,5 @@
 #include "app/batch/thumbnail.h"
+#include "core/data/lattice_slabs.h"
 
 #include <gtest/gtest.h>
 
@@ -33,9 +34,7 @@ TEST(Thumbnail, IsTheSameWhicheverWayTheSlabsAreCut) {
   for (std::size_t axis = 0; axis < 3; ++axis) {
     Thumbnail in_slabs;
     for (std::int64_t i = 0; i < lattice.counts[axis]; ++i) {
-      LatticeBlock slab = whole(lattice);
-      slab.first[axis] += i;
-      slab.counts[axis] = 1;
+      const LatticeBlock slab = slab_of(whole(lattice), axis, i, 1);
       in_slabs.add(lattice, slab, half_full(lattice, slab));
     }
     EXPECT_EQ(in_slabs.bmp(), at_once.bmp());

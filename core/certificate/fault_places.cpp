@@ -43,18 +43,21 @@ std::vector<bool> faulty_vertices(std::size_t count, const std::vector<Triangle>
   return vertices;
 }
 
-bool is_beside(const Vec3& p, const NodeSet& nodes) {
-  const Lattice& lattice = nodes.lattice();
-  std::array<std::int64_t, 3> cell;
+std::array<Node, 8> corners_of_cell_at(const Vec3& p, const Lattice& lattice) {
+  Node cell;
   for (int axis = 0; axis < 3; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
     cell[a] = std::clamp<std::int64_t>(lattice.cell_at(axis, p[axis]), 0, lattice.counts[a] - 2);
   }
-  for (unsigned corner = 0; corner < kuhn::kCorners; ++corner) {
-    const auto [i, j, k] = SurfaceCells::node_at({cell, 0, 0}, corner);
-    if (nodes.holds(i, j, k)) return true;
-  }
-  return false;
+  std::array<Node, 8> corners;
+  static_assert(kuhn::kCorners == corners.size());
+  for (unsigned n = 0; n < kuhn::kCorners; ++n) corners[n] = SurfaceCells::node_at({cell, 0, 0}, n);
+  return corners;
+}
+
+bool is_beside(const Vec3& p, const NodeSet& nodes) {
+  return std::ranges::any_of(corners_of_cell_at(p, nodes.lattice()),
+                             [&](const Node& node) { return nodes.holds(node[0], node[1], node[2]); });
 }
 
 std::vector<bool> faces_beside(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,

@@ -1,6 +1,7 @@
 // Where the faults of a surface are, for those who undo what has made them.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -14,9 +15,11 @@ namespace raycone {
 [[nodiscard]] std::vector<bool> faulty_vertices(std::size_t count, const std::vector<Triangle>& triangles,
                                                 const SurfaceFaults& faults);
 
-// Whether a corner of the cell that a point is in is one of `nodes`. A point between cells, as vertices of a contour
-// are, is in the one of larger coordinates, as far as rounding can tell. Points beyond the lattice are in its
-// outermost cells.
+// The corners of the cell that a point is in. A point between cells, as vertices of a contour are, is in the one of
+// larger coordinates, as far as rounding can tell. Points beyond the lattice are in its outermost cells.
+[[nodiscard]] std::array<NodeSet::Node, 8> corners_of_cell_at(const Vec3& p, const Lattice& lattice);
+
+// Whether one of these is one of `nodes`.
 [[nodiscard]] bool is_beside(const Vec3& p, const NodeSet& nodes);
 
 // Of each triangle whether its box, a voxel larger on each side, has one of `nodes`.

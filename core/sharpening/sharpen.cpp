@@ -201,16 +201,16 @@ void Sharpener::add_faces(const std::vector<Placed>& of_all, const std::vector<s
 void Sharpener::undo() {
   for (std::size_t v = 0; v < strip_vertices_.size(); ++v)
     surface_.mesh.vertices[strip_vertices_[v]] = first_.places[v];
-  for (std::size_t n = 0; n < faces_.size(); ++n) surface_.mesh.triangles[faces_[n]] = first_.triangles[n];
+  for (std::size_t n = 0; n < faces_.size(); ++n) {
+    surface_.mesh.triangles[faces_[n]] = first_.triangles[n];
+    surface_.sources[faces_[n]] = first_.sources[n];
+  }
   surface_.mesh.vertices.resize(first_vertices_);
   surface_.mesh.triangles.resize(first_faces_);
   surface_.sources.resize(first_faces_);
 }
 
-void Sharpener::finish() {
-  for (std::size_t n = 0; n < faces_.size(); ++n) surface_.sources[faces_[n]] = now_.sources[n];
-  drop_gone(surface_);
-}
+void Sharpener::finish() { drop_gone(surface_); }
 
 std::size_t Sharpener::pulls() const {
   return std::accumulate(parts_.begin(), parts_.end(), std::size_t{0},
@@ -218,12 +218,20 @@ std::size_t Sharpener::pulls() const {
 }
 
 SurfaceEdit Sharpener::sharpen() {
-  std::vector<std::uint32_t> all(parts_.size());
-  std::iota(all.begin(), all.end(), 0U);
-  pull(all);
-  SurfaceEdit edit = changes_of(all, first_, std::vector<std::uint8_t>(strip_vertices_.size(), 0));
+  pull(all_parts());
+  SurfaceEdit edit = all_changes();
   edit.apply(surface_.mesh);
   return edit;
+}
+
+SurfaceEdit Sharpener::all_changes() const {
+  return changes_of(all_parts(), first_, std::vector<std::uint8_t>(strip_vertices_.size(), 0));
+}
+
+std::vector<std::uint32_t> Sharpener::all_parts() const {
+  std::vector<std::uint32_t> all(parts_.size());
+  std::iota(all.begin(), all.end(), 0U);
+  return all;
 }
 
 SurfaceEdit Sharpener::keep(const std::vector<std::uint32_t>& vertices, Kept kept) {
@@ -275,6 +283,8 @@ void Sharpener::pull(const std::vector<std::uint32_t>& parts) {
   parallel_for_each(parts.size(), [&](std::size_t n) {
     Part& part = parts_[parts[n]];
     part.pulls = StripPulls(*this, part, now_).pull_all();
+    for (std::uint32_t face = part.first_face; face < part.first_face + part.faces; ++face)
+      surface_.sources[faces_[face]] = now_.sources[face];
   });
 }
 

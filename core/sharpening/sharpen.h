@@ -55,9 +55,12 @@ class Sharpener {
   // faces at `vertices` in any case, so that faults there are looked for again.
   SurfaceEdit keep(const std::vector<std::uint32_t>& vertices, Kept kept);
 
+  // What has been changed of the surface as it was at first.
+  [[nodiscard]] SurfaceEdit all_changes() const;
+
   // Either of these comes last. Back to the surface as it was at first, without spare vertices and faces.
   void undo();
-  // Gives faces the sources that they have now, and drops those that are gone, and vertices that no face has.
+  // Drops faces that are gone, and vertices that no face has.
   void finish();
 
   [[nodiscard]] std::size_t pulls() const;
@@ -100,13 +103,14 @@ class Sharpener {
                        const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips);
   void add_faces(const std::vector<Placed>& of_all, const std::vector<std::uint32_t>& at_strips);
   [[nodiscard]] std::uint32_t part_of_face(const Triangle& t) const;
+  [[nodiscard]] std::vector<std::uint32_t> all_parts() const;
   void pull(const std::vector<std::uint32_t>& parts);
   void keep_in(const Part& part, const std::vector<std::uint8_t>& named, Kept kept);
   [[nodiscard]] bool has_changed(const Part& part, const State& before) const;
   [[nodiscard]] SurfaceEdit changes_of(const std::vector<std::uint32_t>& parts, const State& before,
                                        const std::vector<std::uint8_t>& named) const;
 
-  SurfaceMesh& surface_;                      // at strips as now_ has it, but for sources; elsewhere as it was
+  SurfaceMesh& surface_;                      // at strips as now_ has it; elsewhere as it was
   std::size_t first_vertices_, first_faces_;  // how many there are without spare ones
   const TriangleMesh& input_;
   const DistanceEvaluator& distance_;

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <numbers>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -166,6 +169,77 @@ TEST(Sharpening, EndsWhereFaultsDoNotComeFromPulls) {
   const SurfaceMesh before = cut.surface;
   EXPECT_FALSE(is_sharpened(cut, std::numeric_limits<int>::max()));
   EXPECT_EQ(cut.surface.mesh.triangles, before.mesh.triangles);
+}
+
+// Along random directions, at right angles.
+std::array<Vec3, 3> random_axes(test::Random& random) {
+  std::normal_distribution<double> any;
+  const auto direction = [&] { return Vec3{any(random), any(random), any(random)}; };
+  const auto unit = [](const Vec3& v) { return (1.0 / norm(v)) * v; };
+  const Vec3 u = unit(direction()), w = unit(cross(u, direction()));
+  return {u, cross(w, u), w};
+}
+
+// A prism over a star-shaped polygon, along no axis.
+TriangleMesh star_prism(test::Random& random) {
+  std::uniform_real_distribution<double> radius(0.3, 1.3), height(0.3, 1.3), step(0.3, 1.0);
+  const auto count = static_cast<std::uint32_t>(5 + random() % 6);
+  std::vector<double> angles;
+  double all = 0.0;
+  for (std::uint32_t n = 0; n < count; ++n) angles.push_back(all += step(random));
+  const auto [u, v, w] = random_axes(random);
+  const Vec3 up = height(random) * w;
+  TriangleMesh mesh{{{0, 0, 0}, up}, {}};
+  for (std::uint32_t n = 0; n < count; ++n) {
+    const double angle = 2.0 * std::numbers::pi * angles[n] / all, r = radius(random);
+    const Vec3 p = r * std::cos(angle) * u + r * std::sin(angle) * v;
+    mesh.vertices.push_back(p);
+    mesh.vertices.push_back(p + up);
+    const std::uint32_t a = 2 + 2 * n, b = 2 + 2 * ((n + 1) % count);
+    mesh.triangles.insert(mesh.triangles.end(), {{0, b, a}, {1, a + 1, b + 1}, {a, b, b + 1}, {a, b + 1, a + 1}});
+  }
+  return mesh;
+}
+
+// Where lines of samples along all axes pass through triangles, but for what they meet at borders of these.
+std::vector<Vec3> crossings_of(const TriangleMesh& mesh, const Lattice& lattice) {
+  std::vector<Vec3> points;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const Vec3 &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c], normal = cross(q - p, r - p);
+    for (int axis = 0; axis < 3; ++axis) {
+      const int right = (axis + 1) % 3, up = (axis + 2) % 3;
+      for (std::int64_t i = 0; i < lattice.counts[static_cast<std::size_t>(right)]; ++i) {
+        for (std::int64_t j = 0; j < lattice.counts[static_cast<std::size_t>(up)]; ++j) {
+          Vec3 at = lattice.position(lattice.index_min);
+          at[right] += static_cast<double>(i) * lattice.spacing.x;
+          at[up] += static_cast<double>(j) * lattice.spacing.x;
+          at[axis] += dot(p - at, normal) / normal[axis];
+          const auto is_left = [&](const Vec3& from, const Vec3& to) {
+            return dot(cross(to - from, at - from), normal) > 0.0;
+          };
+          if (is_left(p, q) && is_left(q, r) && is_left(r, p)) points.push_back(at);
+        }
+      }
+    }
+  }
+  return points;
+}
+
+// Three of these prisms had faces that crossed the lattice half a voxel off the mesh.
+TEST(Sharpening, CrossesTheLatticeOnTheMesh) {
+  test::Random random(11);
+  for (int n = 0; n < 100; ++n) {
+    const TriangleMesh mesh = star_prism(random);
+    for (const bool merge : {false, true}) {
+      SurfaceOptions options;
+      options.merge_planes = merge;
+      const test::Made made = test::surface_of(mesh, 9, options);
+      const std::vector<Vec3> crossings = crossings_of(made.surface.mesh, made.lattice);
+      ASSERT_GT(crossings.size(), 20U);
+      // Vertices are within four margins, of up to 2^-18 voxels, of the mesh.
+      EXPECT_LE(test::largest_distance_of(crossings, mesh), 0x1p-16 * made.lattice.spacing.x) << n << " " << merge;
+    }
+  }
 }
 
 }  // namespace

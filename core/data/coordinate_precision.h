@@ -19,4 +19,10 @@ enum class CoordinatePrecision { kDouble, kSingle };
 [[nodiscard]] Vec3 rounded_to(CoordinatePrecision precision, const Vec3& p);
 void round_to(CoordinatePrecision precision, std::vector<Vec3>& points);
 
+// Each coordinate rounded down, so that it is off by up to twice as much. Of two points that share a coordinate, as a
+// node of a lattice and a face across an axis do, both still share it or the rounded one is below: where ties count as
+// if the node were a little above, as they do for rules, it stays on its side.
+[[nodiscard]] Vec3 rounded_down_to(CoordinatePrecision precision, const Vec3& p);
+void round_down_to(CoordinatePrecision precision, std::vector<Vec3>& points);
+
 }  // namespace raycone

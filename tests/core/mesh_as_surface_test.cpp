@@ -170,7 +170,7 @@ TEST(MeshAsSurface, IsRoundedToSinglePrecision) {
   const std::optional<FinishedSurface> made = kept(ball, 20, {.rule = {}, .precision = CoordinatePrecision::kSingle});
   ASSERT_TRUE(made);
   TriangleMesh rounded = ball;
-  round_to(CoordinatePrecision::kSingle, rounded.vertices);
+  round_down_to(CoordinatePrecision::kSingle, rounded.vertices);
   EXPECT_EQ(sorted_vertices(made->surface.mesh), sorted_vertices(rounded));
   // Where floats are a tenth of a unit apart, vertices meet.
   const TriangleMesh far = test::moved(ball, {1, 1, 1}, {1e6, 0, 0});
@@ -179,6 +179,31 @@ TEST(MeshAsSurface, IsRoundedToSinglePrecision) {
   // A contour is refused so far from the origin; floats that are those of the mesh need no margin.
   const TriangleMesh whole = test::box_mesh({1e7, 0, 0}, {1e7 + 64, 64, 64});
   EXPECT_TRUE(kept(whole, 200, {.rule = {}, .precision = CoordinatePrecision::kSingle}));
+}
+
+// As lattices start at the lowest corner of a mesh's box, nodes lie in its lowest planes, and may in any other.
+TEST(MeshAsSurface, KeepsNodesOnTheirSidesOfPlanesInSinglePrecision) {
+  test::Random random(5);
+  int moved_by_nearest = 0;
+  for (int n = 0; n < 20; ++n) {
+    const auto decimal = [&](double most) { return std::round(test::uniform(random, 0.1, most) * 1e6) / 1e6; };
+    const Vec3 lower{-decimal(2), -decimal(2), -decimal(2)}, size{decimal(3), decimal(3), decimal(3)};
+    const TriangleMesh box = test::box_mesh(lower, lower + size);
+    const TriangleMesh beside = test::box_mesh({lower.x + size.x, lower.y, lower.z}, lower + 2.0 * size);
+    for (const TriangleMesh& mesh : {box, weld(test::joined(box, beside), {})}) {
+      const Lattice lattice{lower, 0.125 * size, {-1, -1, -1}, {19, 19, 19}};
+      const WindingNumberEvaluator evaluator(mesh);
+      const NodeSet inside = nodes_inside(evaluator, {}, lattice);
+      TriangleMesh nearest = box;
+      round_to(CoordinatePrecision::kSingle, nearest.vertices);
+      if (mesh.triangles.size() == 12U && !faults_of(nearest, inside).none()) ++moved_by_nearest;
+      const auto made =
+          mesh_as_surface({mesh, evaluator, inside, {.rule = {}, .precision = CoordinatePrecision::kSingle}});
+      ASSERT_TRUE(made) << n;
+      EXPECT_TRUE(faults_of(made->surface.mesh, inside).none()) << n;
+    }
+  }
+  EXPECT_GT(moved_by_nearest, 10);
 }
 
 TEST(MeshAsSurface, IsSimplified) {

@@ -105,9 +105,8 @@ void check_memory(const std::string& name, double more, std::uint64_t limit) {
   const double needed = more + memory_in_use();
   if (needed <= static_cast<double>(limit)) return;
   const std::string allowed = readable_bytes(static_cast<double>(limit));
-  std::string wanted = readable_bytes(needed);
-  constexpr double kMore = 1.02;
-  if (wanted == allowed) wanted = readable_bytes(kMore * needed);
+  std::string wanted = allowed;  // which would be no reason, as far as its digits tell
+  for (double bytes = needed; wanted == allowed; bytes *= 1.02) wanted = readable_bytes(bytes);
   throw LimitError(name + ": needs about " + wanted + " of memory, but the limit is " + allowed);
 }
 

@@ -14,6 +14,8 @@ struct AffineMap {
   Vec3 z{0, 0, 1};
   Vec3 origin;
   bool mirrored = false;  // negative determinant
+
+  friend bool operator==(const AffineMap&, const AffineMap&) = default;
 };
 
 [[nodiscard]] Vec3 transformed(const AffineMap& map, const Vec3& v);

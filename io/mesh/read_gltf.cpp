@@ -20,6 +20,7 @@
 #include "io/mesh/append_placed.h"
 #include "io/mesh/gltf_data.h"
 #include "io/mesh/gltf_document.h"
+#include "io/mesh/gltf_omissions.h"
 #include "io/mesh/gltf_resources.h"
 #include "io/mesh/mesh_builder.h"
 #include "io/mesh/mesh_error.h"
@@ -42,20 +43,10 @@ std::string printed(const Vec3& v) {
   return "(" + std::to_string(v.x) + ", " + std::to_string(v.y) + ", " + std::to_string(v.z) + ")";
 }
 
-// What is left out of the result, for warnings.
-struct Omissions {
-  std::uint64_t incomplete_faces = 0;
-  std::uint64_t points_or_lines = 0;
-  std::uint64_t without_positions = 0;
-  std::uint64_t skinned = 0;
-  std::uint64_t morphed = 0;
-  std::uint64_t without_nodes = 0;
-};
-
 // Assembles one mesh of the document in its own coordinates.
 class MeshAssembler {
  public:
-  MeshAssembler(const std::string& file, GltfData& data, Omissions& omissions)
+  MeshAssembler(const std::string& file, GltfData& data, GltfOmissions& omissions)
       : file_(file), data_(data), model_(data.model()), omissions_(omissions) {}
 
   TriangleMesh assemble(std::size_t mesh) {
@@ -161,7 +152,7 @@ class MeshAssembler {
   const std::string& file_;
   GltfData& data_;
   const tinygltf::Model& model_;
-  Omissions& omissions_;
+  GltfOmissions& omissions_;
   std::string place_;  // of the primitive at hand, for messages
   TriangleMesh result_;
   std::map<std::size_t, Range> first_vertex_;  // of the accessors in result_
@@ -232,6 +223,31 @@ void check_acyclic(const tinygltf::Model& model, std::vector<std::size_t> parent
   if (free.size() < parents.size()) throw InputError(file + ": some nodes are their own ancestors, expected a tree");
 }
 
+// Those of the scene, and those that move or hide what is below them. Only what is below none of these may be a root of
+// the scene: some exporters leave a node above it, which is in no scene and does nothing.
+std::vector<int> nodes_that_act(const tinygltf::Model& model, std::vector<int> nodes) {
+  for (const tinygltf::Node& node : model.nodes) {
+    const auto number = static_cast<int>(&node - model.nodes.data());
+    if (transform_of(node, "") != AffineMap{} || !is_visible(node)) nodes.push_back(number);
+  }
+  return nodes;
+}
+
+// Which nodes are children of these, their children and so on. Precondition: check_acyclic().
+std::vector<bool> nodes_below(const tinygltf::Model& model, std::vector<int> nodes) {
+  std::vector<bool> below(model.nodes.size(), false);
+  while (!nodes.empty()) {
+    const std::vector<int>& children = model.nodes[to_size(nodes.back())].children;
+    nodes.pop_back();
+    for (const int child : children) {
+      if (below[to_size(child)]) continue;
+      below[to_size(child)] = true;
+      nodes.push_back(child);
+    }
+  }
+  return below;
+}
+
 // The roots of the scene shown: the default one, else the first, else all roots.
 std::vector<int> shown_roots(const tinygltf::Model& model, const std::vector<std::size_t>& parents,
                              const std::string& file) {
@@ -243,14 +259,17 @@ std::vector<int> shown_roots(const tinygltf::Model& model, const std::vector<std
     return roots;
   }
   const int scene = std::max(model.defaultScene, 0);
-  check_unique(model.scenes[to_size(scene)].nodes, file + ": scene " + std::to_string(scene) + " names node ");
-  for (const int node : model.scenes[to_size(scene)].nodes) {
-    if (parents[to_size(node)] != 0) {
+  const std::vector<int>& named = model.scenes[to_size(scene)].nodes;
+  check_unique(named, file + ": scene " + std::to_string(scene) + " names node ");
+  if (std::ranges::all_of(named, [&](int node) { return parents[to_size(node)] == 0; })) return named;
+  const std::vector<bool> below = nodes_below(model, nodes_that_act(model, named));
+  for (const int node : named) {
+    if (below[to_size(node)]) {
       throw InputError(file + ": scene " + std::to_string(scene) + " names node " + std::to_string(node) +
                        ", which is a child of another, expected a root node");
     }
   }
-  return model.scenes[to_size(scene)].nodes;
+  return named;
 }
 
 // Calls visit(number, placement) for the scene's visible nodes, parents before children.
@@ -300,7 +319,7 @@ std::vector<bool> have_weights(const std::vector<Part>& parts) {
 }
 
 // All instances of the scene shown, those of one mesh together.
-std::vector<Instance> instances_of(const tinygltf::Model& model, const std::string& file, Omissions& omissions) {
+std::vector<Instance> instances_of(const tinygltf::Model& model, const std::string& file, GltfOmissions& omissions) {
   std::vector<Instance> instances;
   // "A glTF asset that does not contain any scenes should be treated as a library": without nodes, all of it is meant.
   if (model.nodes.empty() && model.scenes.empty()) {
@@ -318,26 +337,11 @@ std::vector<Instance> instances_of(const tinygltf::Model& model, const std::stri
     // The joints alone place a skinned mesh, never its node (section 3.7.3.3); at rest they leave it as it is.
     instances.push_back({to_size(node.mesh), skinned ? AffineMap{} : placement});
   });
-  std::stable_sort(instances.begin(), instances.end(),
-                   [](const Instance& a, const Instance& b) { return a.mesh < b.mesh; });
+  std::ranges::stable_sort(instances, {}, &Instance::mesh);
   return instances;
 }
 
-// --- Warnings -------------------------------------------------------------------------------------------------------
-
-std::vector<Warning> warnings_of(const Omissions& omissions) {
-  std::vector<Warning> warnings;
-  const auto warn = [&](const char* name, std::uint64_t count, const char* noun, const char* what) {
-    if (count > 0) warnings.push_back({name, counted(count, noun) + " " + what});
-  };
-  if (omissions.incomplete_faces > 0) warnings.push_back(skipped_faces_warning(omissions.incomplete_faces));
-  warn("points-or-lines", omissions.points_or_lines, "primitive", "of points or lines ignored");
-  warn("no-positions", omissions.without_positions, "primitive", "without positions ignored");
-  warn("bind-pose", omissions.skinned, "skinned mesh instance", "taken in the bind pose, without its joints");
-  warn("morph-targets", omissions.morphed, "morphed mesh instance", "taken without its morph targets");
-  warn("no-nodes", omissions.without_nodes, "mesh instance", "taken untransformed, because the file has no nodes");
-  return warnings;
-}
+// --- The file --------------------------------------------------------------------------------------------------------
 
 GlbChunks chunks_of(const NamedBytes& source) {
   return is_glb(source.bytes) ? split_glb(source) : GlbChunks{source.bytes, 0, std::nullopt, 0};
@@ -369,7 +373,7 @@ std::vector<std::string> files_of_gltf(const NamedBytes& source) {
 ParsedMesh read_gltf(const NamedBytes& source, std::vector<FileRead>* companions) {
   const GlbChunks chunks = chunks_of(source);
   GltfData data(source, document_of(source, chunks), chunks.binary, companions);
-  Omissions omissions;
+  GltfOmissions omissions;
   MeshAssembler assembler(source.name, data, omissions);
 
   ParsedMesh parsed;

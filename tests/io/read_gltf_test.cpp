@@ -379,8 +379,29 @@ TEST(ReadGltf, NodesHaveAChildOnceAndScenesARoot) {
 TEST(ReadGltf, SceneMayNameRootNodesOnly) {
   Asset asset;
   asset.nodes = R"([{"children":[1]},{"mesh":0}])";
+  constexpr const char* kError = "a.glb: scene 0 names node 1, which is a child of another, expected a root node";
+  asset.rest = R"("scenes":[{"nodes":[0,1]}])";
+  EXPECT_EQ(error_of(asset), kError);
   asset.rest = R"("scenes":[{"nodes":[1]}])";
-  EXPECT_EQ(error_of(asset), "a.glb: scene 0 names node 1, which is a child of another, expected a root node");
+  asset.nodes = R"([{"children":[1],"scale":[1,1,2]},{"mesh":0}])";
+  EXPECT_EQ(error_of(asset), kError);
+  asset.nodes = R"([{"children":[2]},{"mesh":0},{"children":[1],"translation":[0,0,1]}])";
+  EXPECT_EQ(error_of(asset), kError);
+  asset.nodes = R"([{"children":[1],"extensions":{"KHR_node_visibility":{"visible":false}}},{"mesh":0}])";
+  EXPECT_EQ(error_of(asset), kError);
+}
+
+// As UniGLTF writes them.
+TEST(ReadGltf, NodesInNoSceneThatDoNothingMayHaveItsRootsAsChildren) {
+  Asset asset;
+  asset.rest = R"("scenes":[{"nodes":[1]}])";
+  asset.nodes = R"([{"children":[1],"translation":[0,0,0],"rotation":[0,0,0,1],"scale":[1,1,1]},)"
+                R"({"mesh":0,"scale":[2,2,2]}])";
+  const ParsedMesh shown = parse(asset);
+  asset.rest = R"("scenes":[{"nodes":[0]}])";
+  EXPECT_EQ(shown.mesh.vertices, parse(asset).mesh.vertices);
+  EXPECT_EQ(shown.mesh.triangles, parse(asset).mesh.triangles);
+  EXPECT_FALSE(shown.mesh.triangles.empty());
 }
 
 TEST(ReadGltf, ChainOfManyNodesNeedsNoStack) {

@@ -143,7 +143,7 @@ struct Stage {
   }
 };
 
-// The stages of a chain: each chunk with all samples, one chunk after the other. Those of a stage that is at hand have
+// The stages of a chain: each chunk with all samples, one chunk after the other. The vertices of the stage at hand have
 // been viewed.
 template <class Rays>
 class Stages {
@@ -193,8 +193,8 @@ class Stages {
   std::optional<Stage<Rays>> here_, next_;
 };
 
-// Multiplies the factors of a block onto the products of a stage, and views its vertices in the next one, if there are
-// any: their square roots fill the time that products wait for one another.
+// Multiplies the factors of a block onto the products of a stage, and views vertices of the next stage, if there is
+// one: as many of them, whose square roots fill the time that products wait for one another.
 template <class Rays>
 HWY_INLINE void multiply_block(ProductTile& products, const SampleTile& samples, const Stage<Rays>& stage,
                                const Stage<Rays>* next, const EdgeRange& block) {

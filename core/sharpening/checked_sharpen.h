@@ -1,8 +1,8 @@
 // Sharp edges where a lattice does not see them, as far as that does no harm.
 #pragma once
 
+#include "core/cells/node_set.h"
 #include "core/cells/surface_mesh.h"
-#include "core/data/lattice.h"
 #include "core/sharpening/sharpen.h"
 
 namespace raycone {
@@ -12,7 +12,7 @@ namespace raycone {
 // what is near a change is looked at (faults_near(), changed_nodes()). `rounds`: how often is looked for faults at
 // most. Returns whether anything has been pulled; else the surface is as it was. The same for any number of threads.
 // Needs DefaultFloatingPoint.
-[[nodiscard]] bool checked_sharpen(SurfaceMesh& surface, const SharpenInput& input, const Lattice& lattice,
+[[nodiscard]] bool checked_sharpen(SurfaceMesh& surface, const SharpenInput& input, const NodeSet& inside,
                                    const SharpenLimits& limits, int rounds = 11);
 
 }  // namespace raycone

@@ -245,7 +245,7 @@ SurfaceEdit Sharpener::keep(const std::vector<std::uint32_t>& vertices, Kept kep
   std::vector<std::uint32_t> parts;
   for (std::uint32_t part = 0; part < parts_.size(); ++part) {
     if (anew[part] == 0) continue;
-    parts_[part].may_turn = false;
+    if (kept != Kept::kPulledOffMesh) parts_[part].may_turn = false;
     parts.push_back(part);
   }
   // Where that changes nothing, more is kept: what has faults may not stay as it is.

@@ -49,10 +49,10 @@ class Sharpener {
   SurfaceEdit sharpen();
   // What keep() leaves where it was: vertices that were pulled into one of those named, and these; or all that hang
   // together with them by faces of strips.
-  enum class Kept { kPulled, kStrips };
+  enum class Kept { kPulled, kPulledOffMesh, kStrips };
   // Makes the surface what it is if vertices at `vertices` are not pulled. Strips that hang together with them are
-  // pulled anew, and do not turn over. Numbers of other vertices are ignored. Returns what that has changed, with the
-  // faces at `vertices` in any case, so that faults there are looked for again.
+  // pulled anew, and do not turn over, but for kPulledOffMesh. Numbers of other vertices are ignored. Returns what that
+  // has changed, with the faces at `vertices` in any case, so that faults there are looked for again.
   SurfaceEdit keep(const std::vector<std::uint32_t>& vertices, Kept kept);
 
   // What has been changed of the surface as it was at first.

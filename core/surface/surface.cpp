@@ -216,7 +216,7 @@ class SurfaceMaker {
     const SharpenLimits limits{std::max(kOff * margins.inner * lattice.largest_spacing(), tolerance_),
                                kReach * lattice.least_spacing(), options_.precision, fewer};
     const SharpenInput input{mesh_, normals_, distance_};
-    const bool is_pulled = checked_sharpen(surface, input, lattice, limits);
+    const bool is_pulled = checked_sharpen(surface, input, inside_, limits);
     return fill_corner_gaps(surface, input, lattice, limits) || is_pulled;
   }
 

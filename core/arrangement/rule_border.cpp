@@ -58,7 +58,7 @@ class RoundedMesh {
   }
 
   [[nodiscard]] Vec3 rounded(std::uint32_t corner) const {
-    return rounded_down_to(precision_, arrangement_.rounded(corner));
+    return rounded_to(precision_, arrangement_.rounded(corner));
   }
 
   const Arrangement& arrangement_;

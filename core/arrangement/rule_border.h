@@ -24,12 +24,12 @@ struct RuleBorderOptions {
 };
 
 // The parts of faces at which the rule holds on one side alone, facing the other one. All is exact, but that vertices
-// are rounded in the end: points in which faces meet to the nearest doubles, and all down to floats if those are asked
-// for. Equal ones are one vertex then, and triangles of two equal corners are gone. So the border may pass through
-// itself where points are about as close together as numbers are. None where the mesh is open, has more pairs than
-// allowed, or takes too long, and where rays that are to tell its sides keep meeting edges. The same for any number of
-// threads; uses those that ThreadLimit allows. Preconditions: `mesh` is welded, and its used vertices are below 2^1020.
-// Needs DefaultFloatingPoint.
+// are rounded in the end: points in which faces meet to the nearest doubles, and all to floats if those are asked for.
+// Equal ones are one vertex then, and triangles of two equal corners are gone. So the border may pass through itself
+// where points are about as close together as numbers are. None where the mesh is open, has more pairs than allowed, or
+// takes too long, and where rays that are to tell its sides keep meeting edges. The same for any number of threads;
+// uses those that ThreadLimit allows. Preconditions: `mesh` is welded, and its used vertices are below 2^1020. Needs
+// DefaultFloatingPoint.
 [[nodiscard]] std::optional<RuleBorder> rule_border(const TriangleMesh& mesh, const RuleBorderOptions& options);
 
 }  // namespace raycone

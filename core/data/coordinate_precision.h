@@ -7,22 +7,29 @@
 
 namespace raycone {
 
-// The numbers that coordinates are: doubles, or doubles that are floats, too.
-enum class CoordinatePrecision { kDouble, kSingle };
+// The numbers that coordinates are: doubles, or doubles that are floats, too: the nearest ones, or the largest ones
+// that are not above.
+//
+// A node of a lattice and a face across an axis may share a coordinate. If it is rounded to what is not above, the face
+// has the node's coordinate or a lower one. Where ties count as if the node were a little above, as they do for rules,
+// it stays on its side.
+enum class CoordinatePrecision { kDouble, kSingle, kSingleNotAbove };
 
 // What a coordinate is off by at most once it is rounded, as a part of it.
 [[nodiscard]] constexpr double relative_rounding(CoordinatePrecision precision) {
-  return precision == CoordinatePrecision::kSingle ? 0x1p-24 : 0x1p-53;
+  switch (precision) {
+    case CoordinatePrecision::kDouble:
+      return 0x1p-53;
+    case CoordinatePrecision::kSingle:
+      return 0x1p-24;
+    case CoordinatePrecision::kSingleNotAbove:
+      break;
+  }
+  return 0x1p-23;
 }
 
-// Each coordinate rounded to the nearest.
+// Each coordinate rounded. What floats cannot hold is infinite.
 [[nodiscard]] Vec3 rounded_to(CoordinatePrecision precision, const Vec3& p);
 void round_to(CoordinatePrecision precision, std::vector<Vec3>& points);
-
-// Each coordinate rounded down, so that it is off by up to twice as much. Of two points that share a coordinate, as a
-// node of a lattice and a face across an axis do, both still share it or the rounded one is below: where ties count as
-// if the node were a little above, as they do for rules, it stays on its side.
-[[nodiscard]] Vec3 rounded_down_to(CoordinatePrecision precision, const Vec3& p);
-void round_down_to(CoordinatePrecision precision, std::vector<Vec3>& points);
 
 }  // namespace raycone

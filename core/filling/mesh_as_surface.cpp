@@ -15,6 +15,7 @@
 #include "core/certificate/border_components.h"
 #include "core/certificate/certificate.h"
 #include "core/certificate/component_signs.h"
+#include "core/data/coordinate_precision.h"
 #include "core/data/rule.h"
 #include "core/distance/distance.h"
 #include "core/evaluation/winding_number.h"
@@ -128,6 +129,17 @@ std::optional<FinishedSurface> whole_mesh(const SurfaceInput& input, std::uint64
   return made;
 }
 
+// As floats, first those not above: nodes lie in the lowest planes of most meshes, and keep their sides of these so.
+std::optional<FinishedSurface> rounded_mesh(const SurfaceInput& input, std::uint64_t most) {
+  const auto& [mesh, evaluators, inside, options] = input;
+  if (options.precision == CoordinatePrecision::kSingle) {
+    SurfaceOptions not_above = options;
+    not_above.precision = CoordinatePrecision::kSingleNotAbove;
+    if (auto made = whole_mesh({mesh, evaluators, inside, not_above}, most)) return made;
+  }
+  return whole_mesh(input, most);
+}
+
 }  // namespace
 
 std::optional<FinishedSurface> mesh_as_surface(const SurfaceInput& input) {
@@ -137,8 +149,8 @@ std::optional<FinishedSurface> mesh_as_surface(const SurfaceInput& input) {
   const std::uint64_t most = kMostPerCell * mixed_cells(inside);
   if (static_cast<double>(mesh.triangles.size()) > kBeforeMerging * static_cast<double>(most)) return std::nullopt;
   if (options.at_stage) options.at_stage("looking at the mesh itself");
-  if (!is_out_of_scale(inside.lattice(), options)) return whole_mesh(input, most);
-  return made_in_scale(input, [&](const SurfaceInput& scaled) { return whole_mesh(scaled, most); });
+  if (!is_out_of_scale(inside.lattice(), options)) return rounded_mesh(input, most);
+  return made_in_scale(input, [&](const SurfaceInput& scaled) { return rounded_mesh(scaled, most); });
 }
 
 }  // namespace raycone

@@ -28,7 +28,7 @@ SurfaceMesh surface_of(const TriangleMesh& mesh) {
 std::optional<MeshBorder> mesh_border(const TriangleMesh& mesh, const NodeSet& inside, const SurfaceOptions& options,
                                       std::size_t most) {
   SurfaceMesh itself = surface_of(mesh);
-  round_down_to(options.precision, itself.mesh.vertices);
+  round_to(options.precision, itself.mesh.vertices);
   if (!std::isfinite(largest_coordinate(bounding_box(itself.mesh)))) return std::nullopt;  // beyond floats
   if (is_closed_and_embedded(itself.mesh) && keep_border(itself, options.rule)) {
     return MeshBorder{std::move(itself), options.rule};

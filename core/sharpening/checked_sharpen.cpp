@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -29,22 +30,19 @@ class MixedEdges {
       : input_(input), inside_(inside), lattice_(inside.lattice()), limits_(limits) {}
 
   // The vertices that were pulled off such an edge, where a face has come to cross it off the mesh since; of faces that
-  // cross another one, those that were pulled. Without what fill_corner_gaps() will mend.
-  [[nodiscard]] std::vector<std::uint32_t> vertices_off(const SurfaceMesh& surface, const SurfaceEdit& change) const {
+  // cross another one, those that were pulled. Without what fill_corner_gaps() will mend: the first call finds out
+  // where it does.
+  [[nodiscard]] std::vector<std::uint32_t> vertices_off(const SurfaceMesh& surface, const SurfaceEdit& change) {
     const std::vector<FaceOff> off = faces_off(surface, change);
     if (off.empty()) return {};
-    NodeSet nodes(lattice_);
-    for (const FaceOff& face : off) add_corners(face.points, nodes);
-    SurfaceMesh filled = surface;
-    drop_gone(filled);
-    if (fill_corner_gaps(filled, input_, lattice_, limits_)) nodes = nodes_off(filled, nodes);
+    if (!mended_) find_mended(surface, off);
     const std::map<Edge, std::vector<std::uint32_t>> pulled_off = pulled_off_edges(change);
     std::vector<bool> has_moved(surface.mesh.vertices.size(), false);
     for (const std::uint32_t v : change.vertices) has_moved[v] = true;
     std::vector<std::uint32_t> vertices;
     for (const auto& [t, points] : off) {
       for (const Vec3& p : points) {
-        if (!is_beside(p, nodes)) continue;
+        if (is_beside(p, *mended_) && !is_beside(p, *left_)) continue;
         const std::size_t before = vertices.size();
         for (const Edge& edge : edges_at(p)) {
           if (const auto at = pulled_off.find(edge); at != pulled_off.end())
@@ -129,6 +127,15 @@ class MixedEdges {
     return off;
   }
 
+  void find_mended(const SurfaceMesh& surface, const std::vector<FaceOff>& off) {
+    mended_.emplace(lattice_);
+    left_.emplace(lattice_);
+    for (const FaceOff& face : off) add_corners(face.points, *mended_);
+    SurfaceMesh filled = surface;
+    drop_gone(filled);
+    left_ = fill_corner_gaps(filled, input_, lattice_, limits_) ? nodes_off(filled, *mended_) : mended_;
+  }
+
   // Of the cells that the points are in.
   void add_corners(const std::vector<Vec3>& points, NodeSet& nodes) const {
     for (const Vec3& p : points) {
@@ -150,6 +157,8 @@ class MixedEdges {
   const NodeSet& inside_;
   const Lattice& lattice_;
   const SharpenLimits& limits_;
+  // The corners of cells where faces were off at first, and of those where they still are once corners are filled.
+  std::optional<NodeSet> mended_, left_;
 };
 
 }  // namespace
@@ -160,7 +169,7 @@ bool checked_sharpen(SurfaceMesh& surface, const SharpenInput& input, const Node
   const Lattice& lattice = inside.lattice();
   Sharpener sharpener(surface, input, limits);
   SurfaceEdit change = sharpener.sharpen();
-  const MixedEdges edges(input, inside, limits);
+  MixedEdges edges(input, inside, limits);
   NodeSet misplaced(lattice);
   for (int round = 0; round < rounds && sharpener.pulls() > 0; ++round) {
     NearFaults near = faults_near(surface.mesh, change, lattice);

@@ -170,7 +170,7 @@ TEST(MeshAsSurface, IsRoundedToSinglePrecision) {
   const std::optional<FinishedSurface> made = kept(ball, 20, {.rule = {}, .precision = CoordinatePrecision::kSingle});
   ASSERT_TRUE(made);
   TriangleMesh rounded = ball;
-  round_down_to(CoordinatePrecision::kSingle, rounded.vertices);
+  round_to(CoordinatePrecision::kSingleNotAbove, rounded.vertices);
   EXPECT_EQ(sorted_vertices(made->surface.mesh), sorted_vertices(rounded));
   // Where floats are a tenth of a unit apart, vertices meet.
   const TriangleMesh far = test::moved(ball, {1, 1, 1}, {1e6, 0, 0});

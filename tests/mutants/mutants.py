@@ -663,7 +663,7 @@ MUTANTS = [
         ("core/certificate/border_components.cpp", "is_border[n] = !holds(rule, front) && holds(rule, behind);",
          "is_border[n] = true;")]),
     Mutant("meshes_unrounded", "a mesh that is kept is rounded to single precision, too", [
-        ("core/filling/mesh_border.cpp", "  round_down_to(options.precision, itself.mesh.vertices);\n",
+        ("core/filling/mesh_border.cpp", "  round_to(options.precision, itself.mesh.vertices);\n",
          "")]),
     Mutant("unseen_components_kept", "each component must be in a cell with nodes of both kinds", [
         ("core/filling/seen_by_nodes.cpp", "if (!mixed.are_met_by(component, vertices)) return Sight::kUnseen;", "")]),

@@ -825,7 +825,7 @@ MUTANTS = [
         ("core/sharpening/fill_gap.cpp", "return d <= off;",
          "return d <= 1e9 * off;")]),
     Mutant("crossings_leave_the_mesh", "what is pulled crosses mixed edges on the mesh only", [
-        ("core/sharpening/checked_sharpen.cpp", "if (off.empty()) return {};", "return {};")]),
+        ("core/sharpening/mixed_edges.cpp", "if (off.empty()) return {};", "return {};")]),
     Mutant("gaps_from_the_shortest_run_on", "where one way to fill a gap leads nowhere, another one is tried", [
         ("core/sharpening/fill_gap.cpp", "if (++tries_ > kMostTries) return false;", "if (++tries_ > 1) return false;")]),
     Mutant("faults_among_changed_faces_only", "faults are looked for between changed faces and all others", [

@@ -129,10 +129,12 @@ std::optional<FinishedSurface> whole_mesh(const SurfaceInput& input, std::uint64
   return made;
 }
 
-// As floats, first those not above: nodes lie in the lowest planes of most meshes, and keep their sides of these so.
+// Where the mesh has to be rounded to floats, first to those not above: nodes lie in the lowest planes of most meshes,
+// and keep their sides of these so.
 std::optional<FinishedSurface> rounded_mesh(const SurfaceInput& input, std::uint64_t most) {
   const auto& [mesh, evaluators, inside, options] = input;
-  if (options.precision == CoordinatePrecision::kSingle) {
+  const auto is_as_asked = [&](const Vec3& p) { return rounded_to(options.precision, p) == p; };
+  if (options.precision == CoordinatePrecision::kSingle && !std::ranges::all_of(mesh.vertices, is_as_asked)) {
     SurfaceOptions not_above = options;
     not_above.precision = CoordinatePrecision::kSingleNotAbove;
     if (auto made = whole_mesh({mesh, evaluators, inside, not_above}, most)) return made;

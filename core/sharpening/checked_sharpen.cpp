@@ -21,21 +21,19 @@ bool checked_sharpen(SurfaceMesh& surface, const SharpenInput& input, const Node
   for (int round = 0; round < rounds && sharpener.pulls() > 0; ++round) {
     NearFaults near = faults_near(surface.mesh, change, lattice);
     misplaced.flip(changed_nodes(surface.mesh, change, lattice));
-    using Kept = Sharpener::Kept;
+    auto kept = Sharpener::Kept::kPulled;
     if (near.faults.none() && misplaced.empty()) {
-      const std::vector<std::uint32_t> off = edges.vertices_off(surface, sharpener.all_changes());
-      if (off.empty()) {
+      near.vertices = edges.vertices_off(surface, sharpener.all_changes());
+      if (near.vertices.empty()) {
         sharpener.finish();
         return true;
       }
-      change = sharpener.keep(off, round < kPartialRounds ? Kept::kPulledOffMesh : Kept::kStrips);
-      if (change.changes_nothing()) break;
-      continue;
+      kept = Sharpener::Kept::kPulledOffMesh;
     }
     sharpener.for_each_target([&](std::uint32_t vertex, const Vec3& p) {
       if (is_beside(p, misplaced)) near.vertices.push_back(vertex);
     });
-    change = sharpener.keep(near.vertices, round < kPartialRounds ? Kept::kPulled : Kept::kStrips);
+    change = sharpener.keep(near.vertices, round < kPartialRounds ? kept : Sharpener::Kept::kStrips);
     if (change.changes_nothing()) break;  // such faults do not come from pulls
   }
   sharpener.undo();

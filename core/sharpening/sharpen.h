@@ -47,8 +47,8 @@ class Sharpener {
   // Pulls. Returns what that has changed. What is left of strips may turn over on the way, and may then cross other
   // faces.
   SurfaceEdit sharpen();
-  // What keep() leaves where it was: vertices that were pulled into one of those named, and these; or all that hang
-  // together with them by faces of strips.
+  // What keep() leaves where it was: vertices that were pulled into one of those named, and these; the same, where
+  // nothing is wrong but that a face has left the mesh; or all that hang together with them by faces of strips.
   enum class Kept { kPulled, kPulledOffMesh, kStrips };
   // Makes the surface what it is if vertices at `vertices` are not pulled. Strips that hang together with them are
   // pulled anew, and do not turn over, but for kPulledOffMesh. Numbers of other vertices are ignored. Returns what that

@@ -16,6 +16,7 @@
 #include "core/arrangement/effort.h"
 #include "core/data/keep_where.h"
 #include "core/data/vec3.h"
+#include "core/machine/threads.h"
 #include "core/mesh/near_vertices.h"
 #include "core/mesh/used_part.h"
 
@@ -130,15 +131,16 @@ class NearInside {
  public:
   NearInside(const TriangleMesh& mesh, const Triangle& t, double distance)
       : corners_{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]},
-        area_(cross(corners_[1] - corners_[0], corners_[2] - corners_[0])),
-        size_(safe_norm(area_)),
-        distance_(distance) {}
+        area_(cross(corners_[1] - corners_[0], corners_[2] - corners_[0])) {
+    const double size = safe_norm(area_);
+    off_plane_ = size > 0.0 ? distance * size : -1.0;
+    for (std::size_t n = 0; n < 3; ++n) off_side_[n] = distance * size * safe_norm(corners_[(n + 1) % 3] - corners_[n]);
+  }
 
   [[nodiscard]] bool holds(const Vec3& p) const {
-    if (!(size_ > 0.0) || !(std::abs(dot(corners_[0] - p, area_)) <= distance_ * size_)) return false;
+    if (!(std::abs(dot(corners_[0] - p, area_)) <= off_plane_)) return false;
     for (std::size_t n = 0; n < 3; ++n) {
-      const Vec3 from = corners_[n] - p, to = corners_[(n + 1) % 3] - p;
-      if (!(dot(cross(from, to), area_) > distance_ * safe_norm(to - from) * size_)) return false;
+      if (!(dot(cross(corners_[n] - p, corners_[(n + 1) % 3] - p), area_) > off_side_[n])) return false;
     }
     return true;
   }
@@ -146,32 +148,42 @@ class NearInside {
  private:
   std::array<Vec3, 3> corners_;
   Vec3 area_;
-  double size_, distance_;
+  double off_plane_;                // by how much they may be, times the length of area_; nothing has no area
+  std::array<double, 3> off_side_;  // by how much they must be, times that and the side's length
 };
+
+// Of each triangle a neighbour of its corners that is on it; none where the triangle has that corner itself.
+std::vector<std::optional<std::uint32_t>> corners_on_triangles(const TriangleMesh& mesh, double distance) {
+  const Neighbours neighbours(mesh);
+  std::vector<std::optional<std::uint32_t>> found(mesh.triangles.size());
+  parallel_for_each(found.size(), 256, [&](std::size_t face) {
+    const Triangle& t = mesh.triangles[face];
+    const NearInside inside(mesh, t, distance);
+    for (const std::uint32_t corner : t) {
+      const std::span<const std::uint32_t> others = neighbours.of(corner);
+      const auto on = std::ranges::find_if(others, [&](std::uint32_t v) {
+        return inside.holds(mesh.vertices[v]) && std::ranges::find(t, v) == t.end();
+      });
+      if (on == others.end()) continue;
+      found[face] = *on;
+      return;
+    }
+  });
+  return found;
+}
 
 // Cuts triangles in three at the neighbours of their corners that are on them. Whether there were any.
 bool split_at_corners_on_triangles(RuleBorder& border, double distance) {
-  const TriangleMesh& mesh = border.mesh;
-  const Neighbours neighbours(mesh);
-  const auto corner_on = [&](const Triangle& t) -> std::optional<std::uint32_t> {
-    const NearInside inside(mesh, t, distance);
-    for (const std::uint32_t corner : t) {
-      for (const std::uint32_t v : neighbours.of(corner)) {
-        if (inside.holds(mesh.vertices[v]) && std::ranges::find(t, v) == t.end()) return v;
-      }
-    }
-    return std::nullopt;
-  };
-  const std::size_t count = border.sources.size();
-  for (std::size_t face = 0; face < count; ++face) {
+  const std::vector<std::optional<std::uint32_t>> corners = corners_on_triangles(border.mesh, distance);
+  for (std::size_t face = 0; face < corners.size(); ++face) {
+    if (!corners[face]) continue;
+    const std::uint32_t v = *corners[face];
     const Triangle t = border.mesh.triangles[face];
-    const std::optional<std::uint32_t> v = corner_on(t);
-    if (!v) continue;
-    border.mesh.triangles[face] = {t[0], t[1], *v};
-    border.mesh.triangles.insert(border.mesh.triangles.end(), {{t[1], t[2], *v}, {t[2], t[0], *v}});
+    border.mesh.triangles[face] = {t[0], t[1], v};
+    border.mesh.triangles.insert(border.mesh.triangles.end(), {{t[1], t[2], v}, {t[2], t[0], v}});
     border.sources.insert(border.sources.end(), 2, border.sources[face]);
   }
-  return border.sources.size() > count;
+  return border.sources.size() > corners.size();
 }
 
 // Cuts triangles at corners of flat ones. Whether it did: not where there are none, nor where that makes too many.
@@ -223,12 +235,14 @@ void cancel(RuleBorder& border) {
 void snap(RuleBorder& border, double distance) {
   constexpr int kRounds = 8;
   merge_near_vertices(border, distance);
+  bool had_corners = false;
   for (int round = 0; round < kRounds; ++round) {
     const bool had_flat = split_at_flat_triangles(border, distance);
     cancel(border);
-    if (!split_at_corners_on_triangles(border, distance) && !had_flat) break;
+    had_corners = split_at_corners_on_triangles(border, distance);
+    if (!had_corners && !had_flat) break;
   }
-  cancel(border);
+  if (had_corners) cancel(border);
   border.mesh = used_part(border.mesh.vertices, std::move(border.mesh.triangles));
 }
 

@@ -704,7 +704,7 @@ MUTANTS = [
     Mutant("walls_stay", "triangles that are one in either direction are gone", [
         ("core/arrangement/snap.cpp", "if (more * faces[n].direction <= 0) continue;", "if (more * faces[n].direction < 0) continue;")]),
     Mutant("corners_on_faces_stay", "faces that corners are near to are cut there", [
-        ("core/arrangement/snap.cpp", "border.mesh.triangles[face] = {t[0], t[1], *v};", "continue;")]),
+        ("core/arrangement/snap.cpp", "border.mesh.triangles[face] = {t[0], t[1], v};", "continue;")]),
     Mutant("parts_meet_beside_nodes", "a part moves away from the others", [
         ("core/arrangement/fan_cone.cpp", "return goes_away({}, way) && std::ranges::all_of", "return !goes_away({}, way) || std::ranges::all_of")]),
     Mutant("edges_moved_at_one_end", "of two parts the same one moves along all of an edge", [

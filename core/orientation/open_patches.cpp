@@ -23,6 +23,8 @@ namespace {
 constexpr std::size_t kFewSurfaces = 1500;
 constexpr std::size_t kLargestSurfaces = 48;
 
+constexpr double kParts = 1024.0;  // that an area is divided into, where all of it is large faces
+
 // Turned so that its first face runs around its corners by rising coordinates; by exact ones, as all of it may be in
 // one place once it is moved.
 struct TurningSurface {
@@ -40,6 +42,7 @@ class OpenSurfaceTurner::Search {
   Search(const std::vector<OpenSurface>& surfaces, const NumberedVertices& vertices)
       : numbered_(vertices), vertices_(vertices.at) {
     set_order(surfaces);
+    if (surfaces_.size() <= kFewSurfaces) divide_large_faces();
     for (const TurningSurface& surface : surfaces_) {
       first_sample_.push_back(samples_.size());
       samples_.insert(samples_.end(), surface.samples.begin(), surface.samples.end());
@@ -59,7 +62,7 @@ class OpenSurfaceTurner::Search {
  private:
   // Large ones first.
   void set_order(const std::vector<OpenSurface>& surfaces) {
-    constexpr std::size_t kSamples = 1024, kMost = 64;
+    constexpr std::size_t kSamples = 4096, kMost = 64;
     const std::size_t each = std::clamp(kSamples / surfaces.size(), surfaces.size() <= kFewSurfaces ? 2UL : 1UL, kMost);
     surfaces_.resize(surfaces.size());
     parallel_for_each(surfaces.size(), 16, [&](std::size_t i) {
@@ -77,13 +80,23 @@ class OpenSurfaceTurner::Search {
     });
   }
 
+  // What others do to a large face differs from place to place.
+  void divide_large_faces() {
+    double area = 0.0;
+    for (const TurningSurface& surface : surfaces_) area += surface.weight;
+    for (TurningSurface& surface : surfaces_) surface.samples = divided(surface.samples, area / kParts);
+  }
+
   // Their samples are at the same places, however they are turned.
   void set_closed(const std::vector<Triangle>& closed) {
-    constexpr std::size_t kOfClosed = 64;
+    constexpr std::size_t kOfClosed = 256;
     closed_ = &closed;
     samples_.resize(first_sample_.back());
     weight_.clear();
-    const std::vector<SurfaceSample> of_closed = sample_surface(closed, numbered_, kOfClosed);
+    std::vector<SurfaceSample> of_closed = sample_surface(closed, numbered_, kOfClosed);
+    double area = 0.0;
+    for (const SurfaceSample& sample : of_closed) area += sample.weight;
+    of_closed = divided(of_closed, area / kParts);
     samples_.insert(samples_.end(), of_closed.begin(), of_closed.end());
     for (const SurfaceSample& sample : samples_) weight_.push_back(sample.weight);
     constant_.assign(samples_.size(), -0.5);

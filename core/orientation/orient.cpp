@@ -171,6 +171,27 @@ std::vector<FaceFate> fates(const UniqueFaces& unique, const std::vector<std::in
   return fate;
 }
 
+// Of faces with two corners at one position, the first of those with the same positions is left.
+void drop_collapsed_copies(const std::vector<Triangle>& triangles, const std::vector<std::uint32_t>& position,
+                           std::vector<FaceFate>& fate) {
+  const auto positions_of = [&](std::uint32_t face) {
+    Triangle t = triangles[face];
+    for (std::uint32_t& corner : t) corner = position[corner];
+    return t;
+  };
+  std::vector<std::pair<Triangle, std::uint32_t>> collapsed;  // corners in order, and face
+  for (const std::uint32_t face :
+       numbers_where(triangles.size(), [&](std::uint32_t face) { return is_collapsed(positions_of(face)); })) {
+    Triangle t = positions_of(face);
+    std::ranges::sort(t);
+    collapsed.emplace_back(t, face);
+  }
+  std::ranges::sort(collapsed);
+  for (std::size_t n = 1; n < collapsed.size(); ++n) {
+    if (collapsed[n].first == collapsed[n - 1].first) fate[collapsed[n].second] = FaceFate::kDropped;
+  }
+}
+
 OrientedMesh with_fates(TriangleMesh mesh, const std::vector<FaceFate>& fate) {
   OrientationCounts counts;
   for (std::size_t i = 0; i < fate.size(); ++i) {
@@ -231,7 +252,8 @@ OrientedMesh turned_to_agree(TriangleMesh mesh, EqualVertices equal) {
     const std::uint32_t patch = patches.of_face[face];
     sign[face] = static_cast<std::int8_t>(sign[face] * pieces.sign[patch] * sign_of_piece[pieces.of_patch[patch]]);
   }
-  const std::vector<FaceFate> fate = fates(unique, sign, mesh.triangles.size());
+  std::vector<FaceFate> fate = fates(unique, sign, mesh.triangles.size());
+  drop_collapsed_copies(mesh.triangles, position, fate);
   OrientedMesh result = with_fates(std::move(mesh), fate);
   result.counts.patches = patches.size();
   result.counts.cut_edges = patches.cut_edges;

@@ -45,7 +45,7 @@ struct OrientedMesh {
 
 // The mesh with its faces turned. Vertices stay as they are, faces in their order and with their first corner. kAuto:
 //
-//   Of faces with the same three positions, one is left. Faces with two equal corners stay as they are.
+//   Of faces with the same three positions, one is left. Those with two equal corners are not turned.
 //   Patches are joined across edges that exactly two faces share, and turned to agree; where they cannot, they are cut.
 //   A closed patch has no boundary, as a sum of directed edges. Outside all others it is turned outward. Within another
 //   one it is turned the other way than the innermost of those around it; if the faces of both agreed as stored, the

@@ -106,6 +106,25 @@ int side_of_perturbed(const CanonicalFace& face, const Vec3& q) {
   return 1;  // no area: no sample
 }
 
+// At coordinates `b` and `c` of the second and third corner.
+SurfaceSample sample_on(const CanonicalFace& face, double b, double c, double weight) {
+  const Vec3 at = (1.0 - b - c) * face.corners[0] + b * face.corners[1] + c * face.corners[2];
+  return {at, weight, face, face.sign * side_of_perturbed(face, at)};
+}
+
+// The middles of parts² triangles, which are alike.
+void add_parts(const SurfaceSample& sample, int parts, std::vector<SurfaceSample>& result) {
+  constexpr double kThird = 1.0 / 3.0;
+  const double step = 1.0 / parts, weight = sample.weight * step * step;
+  for (int i = 0; i < parts; ++i) {
+    for (int j = 0; i + j < parts; ++j) {
+      result.push_back(sample_on(sample.face, (i + kThird) * step, (j + kThird) * step, weight));
+      if (i + j + 1 == parts) continue;
+      result.push_back(sample_on(sample.face, (i + 2 * kThird) * step, (j + 2 * kThird) * step, weight));
+    }
+  }
+}
+
 }  // namespace
 
 NumberedVertices::NumberedVertices(std::vector<Vec3> moved, const std::vector<Vec3>& exact_vertices)
@@ -139,6 +158,21 @@ std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces, co
     samples.push_back({middle, std::max(r.area, least), r.face, r.face.sign * side_of_perturbed(r.face, middle)});
   }
   return samples;
+}
+
+std::vector<SurfaceSample> divided(const std::vector<SurfaceSample>& samples, double area) {
+  constexpr double kMostParts = 32.0;
+  std::vector<SurfaceSample> result;
+  for (const SurfaceSample& sample : samples) {
+    const auto& [p, q, r] = sample.face.corners;
+    const auto parts = static_cast<int>(std::min(std::sqrt(area_of(p, q, r) / area), kMostParts));
+    if (parts < 2) {
+      result.push_back(sample);
+    } else {
+      add_parts(sample, parts, result);
+    }
+  }
+  return result;
 }
 
 }  // namespace raycone

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -465,7 +466,7 @@ TEST(Orient, CutsAMoebiusStripAcross) {
   EXPECT_EQ(set_of_faces(automatic(test::shuffled(strip, random))), set_of_faces(oriented.mesh));
 }
 
-TEST(Orient, LeavesFacesWithEqualCornersAlone) {
+TEST(Orient, TurnsNoFacesWithEqualCornersAndLeavesEachOnce) {
   TriangleMesh mesh = sphere_of(1);
   mesh.triangles.push_back({0, 0, 1});
   mesh.triangles.push_back({2, 2, 2});
@@ -473,6 +474,12 @@ TEST(Orient, LeavesFacesWithEqualCornersAlone) {
   EXPECT_EQ(oriented.mesh.triangles, mesh.triangles);
   const TriangleMesh nothing{{{0, 0, 0}, {1, 0, 0}}, {{0, 1, 1}}};
   EXPECT_EQ(automatic(nothing).triangles, nothing.triangles);
+  mesh.triangles.insert(mesh.triangles.end(), {{1, 0, 0}, {0, 1, 1}, {2, 2, 2}});
+  const OrientedMesh once = orient(mesh, Orient::kAuto);
+  EXPECT_EQ(once.counts.dropped_duplicates, 2U);
+  mesh.triangles.resize(mesh.triangles.size() - 3);
+  mesh.triangles.push_back({0, 1, 1});
+  EXPECT_EQ(once.mesh.triangles, mesh.triangles);
   EXPECT_TRUE(automatic({}).triangles.empty());
 }
 
@@ -605,6 +612,45 @@ TEST(Orient, IsTheSameAtEveryMagnitude) {
   }
 }
 
+// What the triangles of a mesh, each alone, do at points spread evenly over all of them: on one itself the mean of its
+// two sides is 0.
+struct EffectsAtPoints {
+  std::vector<double> area;                 // that a point stands for
+  std::vector<std::vector<double>> effect;  // of each triangle, at each point
+
+  explicit EffectsAtPoints(const TriangleMesh& mesh) : effect(mesh.triangles.size()) {
+    constexpr int kSteps = 16;
+    for (std::size_t f = 0; f < mesh.triangles.size(); ++f) {
+      const Triangle& t = mesh.triangles[f];
+      const Vec3 a = mesh.vertices[t[0]], ab = mesh.vertices[t[1]] - a, ac = mesh.vertices[t[2]] - a;
+      for (int n = 0; n < kSteps * kSteps; ++n) {
+        double u = (n % kSteps + 0.5) / kSteps, v = (n / kSteps + 0.5) / kSteps;
+        if (u + v > 1.0) std::tie(u, v) = std::pair(1.0 - u, 1.0 - v);
+        area.push_back(norm(cross(ab, ac)) / (2 * kSteps * kSteps));
+        add_effects(mesh, a + u * ab + v * ac, f);
+      }
+    }
+  }
+
+  void add_effects(const TriangleMesh& mesh, const Vec3& at, std::size_t own) {
+    for (std::size_t f = 0; f < effect.size(); ++f) {
+      const TriangleMesh alone{mesh.vertices, {mesh.triangles[f]}};
+      effect[f].push_back(f == own ? 0.0 : test::direct_winding_number(alone, at));
+    }
+  }
+
+  // `reversed`: the triangles that are turned, as bits.
+  [[nodiscard]] double sum(unsigned reversed) const {
+    double sum = 0;
+    for (std::size_t point = 0; point < area.size(); ++point) {
+      double mean = 0;
+      for (std::size_t f = 0; f < effect.size(); ++f) mean += (reversed >> f & 1 ? -1 : 1) * effect[f][point];
+      sum += area[point] * (mean - 0.5) * (mean - 0.5);
+    }
+    return sum;
+  }
+};
+
 // The least sum over all choices of signs, by the definition of the winding number on both sides of each face.
 TEST(Orient, FindsTheBestOrientationOfAFewOpenPatches) {
   Random random(23);
@@ -612,32 +658,30 @@ TEST(Orient, FindsTheBestOrientationOfAFewOpenPatches) {
   constexpr int kMeshes = 30;
   for (int i = 0; i < kMeshes; ++i) {
     const TriangleMesh mesh = test::soup(random, 6);
-    const auto sum_of = [&](const TriangleMesh& turned) {
-      double sum = 0;
-      for (std::size_t f = 0; f < turned.triangles.size(); ++f) {
-        const Triangle& t = turned.triangles[f];
-        const Vec3 a = turned.vertices[t[0]], b = turned.vertices[t[1]], c = turned.vertices[t[2]];
-        const Vec3 normal = cross(b - a, c - a), middle = (1.0 / 3) * (a + b + c);
-        TriangleMesh others = turned;
-        others.triangles.erase(others.triangles.begin() + static_cast<std::ptrdiff_t>(f));
-        const double mean = test::direct_winding_number(others, middle);
-        sum += std::sqrt(dot(normal, normal)) * (mean - 0.5) * (mean - 0.5);
-      }
-      return sum;
-    };
+    const EffectsAtPoints effects(mesh);
     double least = std::numeric_limits<double>::infinity();
-    for (unsigned choice = 0; choice < 64; ++choice) {
-      TriangleMesh turned = mesh;
-      for (std::size_t f = 0; f < 6; ++f) {
-        if (choice >> f & 1) reverse(turned.triangles[f]);
-      }
-      least = std::min(least, sum_of(turned));
-    }
-    const double found = sum_of(automatic(mesh));
+    for (unsigned choice = 0; choice < 64; ++choice) least = std::min(least, effects.sum(choice));
+    const TriangleMesh turned = automatic(mesh);
+    unsigned choice = 0;
+    for (unsigned f = 0; f < 6; ++f) choice |= (turned.triangles[f] == mesh.triangles[f] ? 0U : 1U) << f;
+    const double found = effects.sum(choice);
     best += found < least * 1.0001;
     EXPECT_LT(found, 1.1 * least + 1e-3) << "mesh " << i;
   }
   EXPECT_GE(best, kMeshes * 8 / 10);
+}
+
+// The middles of the sides are in spheres, where all seems inside: by them alone, the box is inside out.
+TEST(Orient, LooksAtMoreThanTheMiddleOfALargeFace) {
+  const TriangleMesh box = box_mesh({0, 0, 0}, {1, 1, 1});
+  TriangleMesh mesh;
+  for (const Triangle& t : box.triangles) {
+    const TriangleMesh side{{box.vertices[t[0]], box.vertices[t[1]], box.vertices[t[2]]}, {{0, 1, 2}}};
+    const Vec3 middle = (1.0 / 3) * (side.vertices[0] + side.vertices[1] + side.vertices[2]);
+    mesh = joined(mesh, test::moved(side, {0.9, 0.9, 0.9}, 0.1 * middle));
+    mesh = joined(mesh, sphere_of(0.05, middle));
+  }
+  expect_restored(mesh);
 }
 
 }  // namespace

@@ -321,17 +321,10 @@ std::optional<DracoMesh> GltfData::decompressed(const tinygltf::Primitive& primi
   const int attribute = draco.Get("attributes").Get("POSITION").GetNumberAsInt();
   spend_draco(bytes.size());
   DracoMesh mesh = decode_draco(bytes, attribute, accessor.componentType, place);
-  const auto check = [&](const char* what, std::size_t count, std::size_t expected) {
-    if (count == expected) return;
-    throw InputError(place + "Draco data of " + counted(count, what) + ", but the accessor has " +
-                     std::to_string(expected));
-  };
-  check("vertex", mesh.vertices.size(), accessor.count);
   const auto indices = primitive.attributes.find(kGltfIndices);
-  if (indices != primitive.attributes.end()) {
-    check_indices(to_size(indices->second));
-    check("corner", mesh.corners.size(), model_->accessors[to_size(indices->second)].count);
-  }
+  if (indices != primitive.attributes.end()) check_indices(to_size(indices->second));
+  // What accessors count is not compared: exporters, and samples of Khronos, have left there what was before
+  // compression.
   spend(mesh.vertices.size());
   for (Vec3& v : mesh.vertices) {
     for (int axis = 0; axis < 3; ++axis) v[axis] = real_of(v[axis], accessor.componentType, accessor.normalized);

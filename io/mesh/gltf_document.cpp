@@ -177,6 +177,12 @@ class Checker {
     throw InputError(file_ + ": " + place + ": " + member.key + what);
   }
 
+  [[noreturn]] void fail_expecting(const std::string& expected, const Json& value, const Member& member,
+                                   const std::string& place) const {
+    fail(place, member,
+         (member.is_array ? " holds " : " is ") + excerpt(value.dump(-1, ' ', true)) + ", expected " + expected);
+  }
+
   void check(Json& value, const Member& member, const std::string& place) {
     if (!member.is_array && member.row.kind == kObject) return check_object(value, member, place + ", " + member.key);
     if (!member.is_array) return check_scalar(value, member, place);
@@ -200,11 +206,10 @@ class Checker {
 
   void check_scalar(Json& value, const Member& member, const std::string& place) const {
     const Kind kind = member.row.kind;
-    const char* is_not = member.is_array ? " holds something that is not " : " is not ";
     if (kind == kCount || kind == kIndex) return check_integer(value, member, place);
-    if (kind == kNumber && !value.is_number()) fail(place, member, std::string(is_not) + "a number");
-    if (kind == kText && !value.is_string()) fail(place, member, std::string(is_not) + "a string");
-    if (kind == kFlag && !value.is_boolean()) fail(place, member, std::string(is_not) + "true or false");
+    if (kind == kNumber && !value.is_number()) fail_expecting("a number", value, member, place);
+    if (kind == kText && !value.is_string()) fail_expecting("a string", value, member, place);
+    if (kind == kFlag && !value.is_boolean()) fail_expecting("true or false", value, member, place);
     if (kind == kName && !value.is_string()) value = "";
     if (kind == kPresence) value = 0;
   }
@@ -216,8 +221,7 @@ class Checker {
       const double number = value.get<double>();
       if (number >= 0.0 && number <= 0x1p53 && std::floor(number) == number) value = static_cast<std::uint64_t>(number);
     }
-    const std::string text = value.is_number_unsigned() ? "" : excerpt(value.dump(-1, ' ', true));
-    if (!value.is_number_unsigned()) fail(place, member, " is " + text + ", expected a non-negative integer");
+    if (!value.is_number_unsigned()) fail_expecting("a non-negative integer", value, member, place);
     const auto number = value.get<std::uint64_t>();
     const auto& [path, kind, name, presence, limit] = member.row;
     if (kind == kCount && number > limit) {

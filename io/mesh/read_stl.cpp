@@ -34,7 +34,7 @@ class AsciiStlReader {
       } else if (text_.skip_word("solid")) {
         name_ = read_name([this] { return begins_facet(); });
         groups_.start_group(std::string(name_), builder_.triangle_count());
-      } else if (text_.skip_word("endsolid")) {
+      } else if (next_ends("solid")) {
         skip_end_name();
       } else {
         text_.fail_expecting("'facet' or 'endsolid'");
@@ -120,8 +120,20 @@ class AsciiStlReader {
       text_.skip_whitespace();
     }
     builder_.end_polygon();
-    expect("endloop", "'vertex' or 'endloop'");
-    expect("endfacet");
+    if (!next_ends("loop")) text_.fail_expecting("'vertex' or 'endloop'");
+    if (!next_ends("facet")) text_.fail_expecting("'endfacet'");
+  }
+
+  // "endloop", or "end loop".
+  bool next_ends(const std::string& what) {
+    if (next_is("end" + what)) return true;
+    const std::size_t start = text_.offset();
+    if (next_is("end")) {
+      const std::size_t line_end = next_line();
+      if (next_is(what) && text_.offset() <= line_end) return true;
+    }
+    text_.seek(start);
+    return false;
   }
 
   // Whatever stands there: normals of degenerate triangles are often not numbers.
@@ -142,10 +154,8 @@ class AsciiStlReader {
     builder_.add_corner(static_cast<std::uint32_t>(builder_.vertex_count() - 1));
   }
 
-  void expect(std::string_view word) { expect(word, "'" + std::string(word) + "'"); }
-
-  void expect(std::string_view word, const std::string& expected) {
-    if (!next_is(word)) text_.fail_expecting(expected);
+  void expect(std::string_view word) {
+    if (!next_is(word)) text_.fail_expecting("'" + std::string(word) + "'");
   }
 
   TextScanner text_;

@@ -667,7 +667,7 @@ TEST(ReadGltf, ReferencesThatAreNotNumbersInRangeAreErrors) {
   asset.nodes = R"([{"mesh":"0"}])";
   EXPECT_EQ(error_of(asset), "a.glb: node 0: mesh is \"0\", expected a non-negative integer");
   asset.nodes = R"([{"mesh":0,"children":[null]}])";
-  EXPECT_EQ(error_of(asset), "a.glb: node 0: children is null, expected a non-negative integer");
+  EXPECT_EQ(error_of(asset), "a.glb: node 0: children holds null, expected a non-negative integer");
   asset = {};
   asset.meshes = R"([{"primitives":[{"attributes":{"POSITION":-1}}]}])";
   EXPECT_EQ(error_of(asset), "a.glb: mesh 0, primitive 0, attributes: POSITION is -1, expected a non-negative integer");
@@ -712,7 +712,7 @@ TEST(ReadGltf, InvisibleNodesAreHiddenWithTheirChildren) {
   required.rest += R"(,"extensionsUsed":["KHR_node_visibility"],"extensionsRequired":["KHR_node_visibility"])";
   EXPECT_EQ(parse(required).mesh.triangles.size(), 0U);
   EXPECT_EQ(error_of(with_nodes(R"([{"mesh":0,"extensions":{"KHR_node_visibility":{"visible":0}}}])")),
-            "a.glb: node 0, extensions, KHR_node_visibility: visible is not true or false");
+            "a.glb: node 0, extensions, KHR_node_visibility: visible is 0, expected true or false");
 }
 
 TEST(ReadGltf, TwoMembersOfOneNameAreRefused) {
@@ -740,7 +740,8 @@ TEST(ReadGltf, VersionsThatTakeALaterReaderAreRefused) {
   EXPECT_EQ(error(R"("version":"2.0","minVersion":"3.0")"), "a.glb: document: minVersion 3.0, expected glTF 2.0");
   EXPECT_EQ(error(R"("version":"2.0","minVersion":"2.10")"), "a.glb: document: minVersion 2.10, expected glTF 2.0");
   EXPECT_EQ(error(R"("version":"2.0","minVersion":"2")"), "a.glb: document: minVersion 2, expected glTF 2.0");
-  EXPECT_EQ(error(R"("version":"2.0","minVersion":2.0)"), "a.glb: document, asset: minVersion is not a string");
+  EXPECT_EQ(error(R"("version":"2.0","minVersion":2.0)"),
+            "a.glb: document, asset: minVersion is 2.0, expected a string");
   EXPECT_EQ(error(R"("version":"2.x")"), "a.glb: document: version 2.x, expected glTF 2.0");
 }
 

@@ -101,6 +101,12 @@ TEST(ReadStl, AsciiFacetMayBeginInTheLineOfASolidOrEndsolid) {
   EXPECT_EQ(parse("solid " + kFacet + "endsolid\n").mesh.triangles.size(), one);
   EXPECT_EQ(parse("solid a b " + kFacet + kFacet + "endsolid a b\n").mesh.triangles.size(), two);
   EXPECT_EQ(parse("solid a\n" + kFacet + "endsolid a solid b " + kFacet).mesh.triangles.size(), two);
+  EXPECT_EQ(parse("solid a\n" + kFacet + "end solid a\nsolid b\n" + kFacet + "end\tsolid").mesh.triangles.size(), two);
+  std::string facet = kFacet;
+  for (const std::string what : {"loop", "facet"}) facet.replace(facet.find("end" + what), 3, "end ");
+  EXPECT_EQ(parse("solid a\n" + facet + "end solid a").mesh.triangles.size(), one);
+  EXPECT_EQ(error_of("solid a\n" + kFacet + "end\nsolid b\n" + kFacet),
+            "f:9: expected 'facet' or 'endsolid', found 'end'");
   EXPECT_EQ(parse(in_one_line("solid a\n" + kFacet + kFacet + "endsolid a")).mesh.triangles.size(), two);
   EXPECT_EQ(parse(in_one_line("SOLID\nFACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0 VERTEX 1 0 0 VERTEX 0 1 0\n"
                               "ENDLOOP ENDFACET ENDSOLID"))
@@ -120,7 +126,7 @@ TEST(ReadStl, AsciiSolidMayBeginInTheLineOfAnEndsolid) {
   using Groups = std::vector<std::string>;
   const Groups both{"a: 0", "b: 2"};
   const std::string two = kFacet + kFacet;
-  for (const std::string end : {"endsolid a", "endsolid", "ENDSOLID  a ", "endsolid other name"}) {
+  for (const std::string end : {"endsolid a", "endsolid", "ENDSOLID  a ", "endsolid other name", "end solid a"}) {
     for (const std::string between : {"\n", " ", "\n\n", "\t"}) {
       const std::string text = "solid a\n" + two + end + between + "solid b\n" + kFacet + "endsolid b\n";
       EXPECT_EQ(groups_of(text), both) << text;

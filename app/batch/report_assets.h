@@ -28,9 +28,10 @@ svg rect { fill: var(--mark); fill-opacity: .75; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; width: 100%; font-size: 13px; }
 th, td { padding: .3rem .6rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: middle; }
-th { position: sticky; top: 0; background: var(--paper); white-space: nowrap; }
+th { position: sticky; top: 0; background: var(--paper); vertical-align: bottom; }
 th.sort { cursor: pointer; }
-td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; }
+td.n { white-space: nowrap; }
 .name, .message { overflow-wrap: anywhere; min-width: 9rem; }
 td .message { color: var(--quiet); }
 code { overflow-wrap: anywhere; }
@@ -42,7 +43,8 @@ td img { display: block; width: 64px; height: 64px; object-fit: contain; image-r
 )";
 
 // Sorts by the column whose heading is clicked, downwards first for numbers. Shows the rows with the warning that the
-// address names behind #warning=, or that is clicked; all where it names none that there is.
+// address names behind #warning=, or that is clicked; all where it names none that there is. A table without rows to
+// show is hidden, with its heading.
 inline constexpr const char* kReportScript = R"(
 for (const head of document.querySelectorAll('th.sort')) head.addEventListener('click', () => {
   const body = head.closest('table').tBodies[0], column = head.cellIndex, numeric = head.classList.contains('n');
@@ -60,6 +62,8 @@ const filter = () => {
   const name = chosen?.dataset.f;
   for (const row of document.querySelectorAll('tr[data-w]'))
     row.hidden = Boolean(name) && !row.dataset.w.split(' ').includes(name);
+  for (const section of document.querySelectorAll('section'))
+    section.hidden = ![...section.querySelectorAll('tr[data-w]')].some(row => !row.hidden);
 };
 for (const button of buttons) button.addEventListener('click', () => { location.hash = fragment(button); });
 addEventListener('hashchange', filter);

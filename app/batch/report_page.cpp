@@ -224,8 +224,10 @@ std::string figure_cells(const MeshFigures& f) {
                      readable_bytes(static_cast<double>(f.peak_memory_bytes)));
 }
 
+std::string thumbnail_of(const BatchRecord& record) { return record.origin ? record.origin->thumbnail : ""; }
+
 std::string thumbnail_cell(const BatchRecord& record) {
-  const std::string image = record.origin ? record.origin->thumbnail : "";
+  const std::string image = thumbnail_of(record);
   if (image.empty()) return "<td></td>";
   return "<td><img alt=\"\" loading=\"lazy\" src=\"data:image/bmp;base64," + html_text(image) + "\"></td>";
 }
@@ -238,14 +240,16 @@ std::string failures(const BatchRecords& records) {
             name_of(record.row.status) + "</td>" + warning_cell(record.row) + "</tr>\n";
   }
   if (rows.empty()) return "";
-  return "<h2>Failures</h2>\n<div class=\"scroll\"><table><thead><tr><th class=\"sort\">mesh</th>"
+  return "<section>\n<h2>Failures</h2>\n<div class=\"scroll\"><table><thead><tr><th class=\"sort\">mesh</th>"
          "<th class=\"sort\">cause</th><th class=\"sort\">warnings</th></tr></thead><tbody>\n" +
-         rows + "</tbody></table></div>\n";
+         rows + "</tbody></table></div>\n</section>\n";
 }
 
 std::string evaluated(const BatchRecords& records) {
-  std::string html =
-      "<h2>Meshes</h2>\n<div class=\"scroll\"><table><thead><tr><th>middle layer</th><th class=\"sort\">mesh</th>";
+  // Points have no layers.
+  const bool has_images = std::ranges::any_of(records, [](const auto& r) { return !thumbnail_of(r.second).empty(); });
+  std::string html = std::string("<section>\n<h2>Meshes</h2>\n<div class=\"scroll\"><table><thead><tr>") +
+                     (has_images ? "<th>middle layer</th>" : "") + "<th class=\"sort\">mesh</th>";
   for (const char* const column :
        {"faces", "exterior edges", "samples", "read", "prepare", "evaluate", "write", "peak memory"}) {
     html += std::string("<th class=\"n sort\">") + column + "</th>";
@@ -253,10 +257,10 @@ std::string evaluated(const BatchRecords& records) {
   html += "<th class=\"sort\">warnings</th></tr></thead><tbody>\n";
   for (const auto& [mesh, record] : records) {
     if (!is_ok(record)) continue;
-    html += row_start(record.row) + thumbnail_cell(record) + mesh_cell(mesh, record.row.message) +
+    html += row_start(record.row) + (has_images ? thumbnail_cell(record) : "") + mesh_cell(mesh, record.row.message) +
             figure_cells(*record.row.figures) + warning_cell(record.row) + "</tr>\n";
   }
-  return html + "</tbody></table></div>\n";
+  return html + "</tbody></table></div>\n</section>\n";
 }
 
 std::string gaps(const std::vector<std::string>& missing) {
@@ -300,7 +304,7 @@ std::size_t write_report_page(const ReportCommand& command) {
   refuse_to_replace_results(command);
   const BatchRecords records = read_all_results(command.directory);
   if (records.empty() && std::ranges::none_of(names_in(command.directory), holds_rows)) {
-    throw InputError(command.directory + ": no results, expected the results.csv of a batch");
+    throw InputError(command.directory + ": no results, expected the directory of a batch, with its results.csv");
   }
   const std::vector<std::string> missing = missing_shards(command.directory);
   if (!command.run.quiet) {

@@ -148,7 +148,7 @@ std::string result_options(const std::string& format, const MeshValues& of_mesh)
 CommandSpec batch_spec() {
   CommandSpec spec = lattice_spec();
   spec.name = "batch";
-  spec.description = "Evaluate many meshes, each in its own process; resumable";
+  spec.description = "Evaluate many meshes, apart from each other; resumable";
   spec.operands = {{"MESH|DIR|@LIST", "Mesh, directory to search, or list of them; @- for a list on standard input",
                     OperandCount::kMany}};
   std::string formats;

@@ -163,7 +163,7 @@ OptionGroup run_group() {
 RunOptions parse_run(const Values& values) {
   RunOptions run;
   if (values.given("--threads")) run.threads = static_cast<int>(values.integer("--threads", 1, kMaxThreads));
-  if (values.given("--timeout")) run.timeout = values.positive("--timeout");
+  if (values.given("--timeout")) run.timeout = values.positive("--timeout", "seconds");
   if (values.given("--memory-limit")) {
     run.memory_limit = byte_count_from(values.text("--memory-limit"));
     if (!run.memory_limit) {

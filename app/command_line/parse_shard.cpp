@@ -20,7 +20,7 @@ std::optional<std::int64_t> slurm_number(const std::string& name) {
 std::int64_t required_slurm_number(const std::string& name) {
   if (const std::optional<std::int64_t> number = slurm_number(name)) return *number;
   throw UsageError("--shard slurm: SLURM_ARRAY_TASK_" + name +
-                   " is no number: expected to run in an array job of Slurm");
+                   " is not set to a number, expected to run in an array job of Slurm");
 }
 
 Shard slurm_shard() {

@@ -23,9 +23,10 @@ Values Values::with(const std::string& name, const std::vector<std::string>& tex
   return result;
 }
 
-double Values::positive(const std::string& name) const {
+double Values::positive(const std::string& name, const std::string& unit) const {
   const std::optional<double> number = number_from(text(name));
-  if (!number || !(*number > 0.0)) invalid(name, text(name), "a positive number");
+  const std::string of_unit = unit.empty() ? "" : " of " + unit;
+  if (!number || !(*number > 0.0)) invalid(name, text(name), "a positive number" + of_unit);
   return *number;
 }
 

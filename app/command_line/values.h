@@ -27,7 +27,7 @@ class Values {
   [[nodiscard]] Values with(const std::string& name, const std::vector<std::string>& texts) const;
 
   // Throw UsageError for any other value.
-  [[nodiscard]] double positive(const std::string& name) const;
+  [[nodiscard]] double positive(const std::string& name, const std::string& unit = "") const;
   [[nodiscard]] std::int64_t integer(const std::string& name, std::int64_t least, std::int64_t most) const;
 
   // Throws UsageError if `name` is given together with one of `others`.

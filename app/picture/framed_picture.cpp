@@ -160,7 +160,7 @@ double draw_axis_upwards(Coverage& ink, const PageLayout& layout, const PlotAxis
 void draw_titles(Coverage& ink, const PageLayout& layout, const Legend& legend, std::span<const std::string> titles,
                  double end) {
   const double t = layout.text;
-  const double begin = std::max(static_cast<double>(layout.left), end + t);
+  const double begin = std::max(static_cast<double>(layout.left), end + 2.5 * t);
   const auto above_legend = static_cast<double>(layout.legend_left()) + std::max(t / 12.0, 1.0);
   const double most = static_cast<double>(layout.page_width) - kEdge * t - text_width(legend.title, t);
   const bool fits = std::min(most, above_legend) >= begin;

@@ -113,10 +113,19 @@ void occupy_standard_descriptors() {
   }
 }
 
+// Libraries that read these would print lines of their own, some of them on standard output. Before there are threads.
+void forget_settings_of_libraries() {
+  for (const char* const name :
+       {"TBB_VERSION", "BLOSC_PRINT_SHUFFLE_ACCEL", "BLOSC_WARN", "LOG4CPLUS_LOGLOG_DEBUGENABLED",
+        "LOG4CPLUS_LOGLOG_QUIETMODE", "EXPAT_ACCOUNTING_DEBUG", "EXPAT_ENTITY_DEBUG", "EXPAT_ENTROPY_DEBUG"}) {
+    unsetenv(name);
+  }
+}
+
 }  // namespace
 
 void set_up_process() {
-  unsetenv("TBB_VERSION");  // TBB would print lines of its own
+  forget_settings_of_libraries();
   occupy_standard_descriptors();
   prepare_handler_stack();
   // What the caller ignores stays ignored, and what a preloaded library handles (profilers, sanitizers) stays its own.

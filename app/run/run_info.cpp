@@ -55,12 +55,12 @@ CostedLattices costed_lattices(const MeshToEvaluate& input, const Box& bounds) {
 // Who names a mesh format means a mesh.
 bool is_values(const MeshOptions& options) { return !options.reading.format && holds_values(options.path); }
 
-// "161 pairs of faces intersect, 160 boundary edges"
+// "161 pairs of faces intersect, 160 exterior edges"
 std::string listed_flaws(std::uint64_t pairs, const MeshStatistics& statistics) {
   std::string text = counted(pairs, "pair") + " of faces intersect" + (pairs == 1 ? "s" : "");
   const std::pair<std::uint64_t, const char*> edges[] = {{statistics.nonmanifold_edges, "non-manifold edge"},
                                                          {statistics.inconsistent_edges, "inconsistent edge"},
-                                                         {statistics.exterior_edges, "boundary edge"}};
+                                                         {statistics.exterior_edges, "exterior edge"}};
   for (const auto& [count, name] : edges) {
     if (count > 0) text += ", " + counted(count, name);
   }

@@ -134,6 +134,10 @@ class Everywhere(Contract):
         expected = self.works(words).stdout
         others = {"TMPDIR": "/absent", "HOME": "/absent", "XDG_CONFIG_HOME": "/absent", "OMP_NUM_THREADS": "1", "NO_COLOR": "1"}
         self.assertEqual(self.works(words, env={**os.environ, **others}).stdout, expected)
+        of_libraries = dict.fromkeys(("TBB_VERSION", "BLOSC_PRINT_SHUFFLE_ACCEL", "LOG4CPLUS_LOGLOG_DEBUGENABLED"), "1")
+        to_vdb = [*words, "--format", "vdb", "--quiet"]
+        vdb = self.works(to_vdb, text=False, env={**os.environ, **of_libraries})
+        self.assertEqual((vdb.stdout, vdb.stderr), (self.works(to_vdb, text=False).stdout, b""))
         self.assertEqual(run(words, env={**os.environ, "RAYCONE_THREADS": "none"}).returncode, 1)
         self.assertEqual(self.works(words, env={**os.environ, **self.with_decimal_commas()}).stdout, expected)
 

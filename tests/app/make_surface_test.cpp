@@ -12,7 +12,6 @@
 #include "app/options/field_options.h"
 #include "app/process/memory_limit.h"
 #include "core/cells/node_set.h"
-#include "core/mesh/weld.h"
 #include "io/files/file_error.h"
 #include "tests/support/shapes.h"
 
@@ -22,14 +21,14 @@ namespace {
 constexpr std::uint64_t kAllMemory = std::numeric_limits<std::uint64_t>::max();
 
 MadeSurface made(const SurfaceOptions& options) {
-  const TriangleMesh mesh = weld(sphere(8), {});
+  const TriangleMesh mesh = sphere(8);
   const Lattice lattice{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 11}};
   return make_surface({"m"}, mesh, exterior_edges(mesh), lattice, options, kAllMemory);
 }
 
 // A band of a sphere, which needs a contour: what is inside is a ring.
 TriangleMesh ring() {
-  TriangleMesh mesh = weld(sphere(8), {});
+  TriangleMesh mesh = sphere(8);
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
     return std::ranges::any_of(t, [&](std::uint32_t v) { return std::abs(mesh.vertices[v].z) > 0.5; });
   });
@@ -60,7 +59,7 @@ TEST(MakeSurface, IsRefusedWhereItsMemoryDoesNotDo) {
   }
   EXPECT_EQ(stages, 1);  // a look at the mesh itself
   EXPECT_GT(make(1.1, mesh).report.faces, 0U);
-  EXPECT_EQ(make(0.5, weld(sphere(8), {})).report.faces, 224U);
+  EXPECT_EQ(make(0.5, sphere(8)).report.faces, 224U);
 }
 
 TEST(MakeSurface, TellsThatNothingIsSimplified) {
@@ -114,7 +113,7 @@ TEST(MakeSurface, ReportsNoHolesOfAClosedMesh) {
     const Vec3 far{kFar, kFar, kFar};
     return box_mesh(far + lower, far + upper);
   };
-  const TriangleMesh mesh = weld(joined(box({2, 0, 1}, {3, 3, 2}), box({2, 0, 1}, {3, 1, 3})), {});
+  const TriangleMesh mesh = joined(box({2, 0, 1}, {3, 3, 2}), box({2, 0, 1}, {3, 1, 3}));
   const Lattice lattice{
       {kFar + 1.84375, kFar - 0.21875, kFar + 0.71875}, {kVoxel, kVoxel, kVoxel}, {0, 0, 0}, {9, 20, 15}};
   SurfaceOptions options{.rule = *rule_from_name("odd"), .simplify = 3e-4};
@@ -158,7 +157,7 @@ TEST(MakeSurface, DoesNotTellOfNextToNoArea) {
   const Lattice lattice{{-0.4, -0.4, -0.4}, {0.25, 0.25, 0.25}, {0, 0, 0}, {8, 8, 9}};
   const auto warnings = [&](double width) {
     const TriangleMesh post = box_mesh({1, 1, 1}, {1 + width, 1 + width, 1.3});
-    const TriangleMesh mesh = weld(joined(box_mesh({0, 0, 0}, {1, 1, 1}), post), {});
+    const TriangleMesh mesh = joined(box_mesh({0, 0, 0}, {1, 1, 1}), post);
     SurfaceOptions options;
     options.merge_planes = false;  // else the mesh's own faces are kept
     return make_surface({"m"}, mesh, exterior_edges(mesh), lattice, options, kAllMemory).warnings;
@@ -172,7 +171,7 @@ TEST(MakeSurface, DoesNotTellOfNextToNoArea) {
 TEST(MakeSurface, TellsThatPartsAreTooThin) {
   const Lattice lattice{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 30}};
   const auto names = [&](double height, double thickness) {
-    TriangleMesh mesh = weld(sphere(8), {});
+    TriangleMesh mesh = sphere(8);
     const TriangleMesh plate = box_mesh({-0.9, -0.9, 4.05}, {0.9, 0.9, 4.05 + height});
     const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     mesh.vertices.insert(mesh.vertices.end(), plate.vertices.begin(), plate.vertices.end());

@@ -26,7 +26,7 @@ TriangleMesh two_boxes() {
 }
 
 TEST(Arrangement, IsTheMeshWhereNothingMeets) {
-  const TriangleMesh sphere = weld(test::sphere(9), {});
+  const TriangleMesh sphere = test::sphere(9);
   const std::optional<Arrangement> arrangement = Arrangement::of(sphere, 0);
   ASSERT_TRUE(arrangement);
   EXPECT_EQ(arrangement->triangles(), sphere.triangles);
@@ -37,7 +37,7 @@ TEST(Arrangement, IsTheMeshWhereNothingMeets) {
 TEST(Arrangement, CutsFacesIntoPieces) {
   test::Random random(1);
   for (int round = 0; round < 40; ++round) {
-    const TriangleMesh mesh = weld(test::lattice_soup(random, 12, 3 + round % 3), {});
+    const TriangleMesh mesh = test::lattice_soup(random, 12, 3 + round % 3);
     std::optional<Arrangement> arrangement = Arrangement::of(mesh, kEnough);
     ASSERT_TRUE(arrangement);
     Vec3 of_mesh, of_pieces;
@@ -57,9 +57,9 @@ TEST(Arrangement, CutsFacesIntoPieces) {
 
 TEST(Arrangement, LeavesOutWhatCancels) {
   const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
-  const TriangleMesh both = weld(test::joined(box, test::reversed(box)), {});
+  const TriangleMesh both = test::joined(box, test::reversed(box));
   EXPECT_TRUE(Arrangement::of(both, kEnough).value().triangles().empty());
-  const Arrangement twice = Arrangement::of(weld(test::joined(box, box), {}), kEnough).value();
+  const Arrangement twice = Arrangement::of(test::joined(box, box), kEnough).value();
   EXPECT_EQ(twice.triangles().size(), 12U);
   for (std::size_t n = 0; n < 12; ++n) EXPECT_EQ(twice.multiplicity(n), 2);
 }

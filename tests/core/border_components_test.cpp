@@ -4,7 +4,6 @@
 
 #include "core/cells/surface_mesh.h"
 #include "core/data/rule.h"
-#include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -18,7 +17,7 @@ TEST(BorderComponents, AreWithoutThoseThatAreTurnedOver) {
     return turned ? test::reversed(other) : other;
   };
   const auto left = [&](double x, bool turned) {
-    SurfaceMesh surface{weld(test::joined(box, small(x, turned)), {}), {}};
+    SurfaceMesh surface{test::joined(box, small(x, turned)), {}};
     surface.sources.resize(surface.mesh.triangles.size(), 0);
     EXPECT_TRUE(keep_border(surface, Rule{}));
     return surface.sources.size();

@@ -222,7 +222,7 @@ TEST(Gradient, OfATinyMeshFarAwayIsNothing) {
 TEST(Gradient, FarAwayIsNothingAndNotNothingOverNothing) {
   // The side from the second to the third corner of a triangle is across some of the directions.
   const TriangleMesh triangle{{{0, 0, 0}, {0.3, 0, 0}, {0, 0.3, 0}}, {{{0, 1, 2}}}};
-  for (const TriangleMesh& mesh : {weld(test::open_box(), {}), weld(triangle, {})}) {
+  for (const TriangleMesh& mesh : {test::open_box(), weld(triangle, {})}) {
     for (const double far : {1e20, 1e25, 1e30, 1e34, 1e35, 1e60, 1e150, 1e300}) {
       for (const Vec3& direction : {Vec3{1, 1, 1}, Vec3{-1, 1, 0}, Vec3{0, 0, 1}, Vec3{0.3, -0.2, 0.7}}) {
         const Vec3 q = far * direction;

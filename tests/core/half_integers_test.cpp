@@ -141,7 +141,7 @@ TEST(HalfIntegers, AreExactWhereOtherEdgesCancel) {
   sheet.vertices = {{2, 0.5, 0.25}, {2.25, 1.125, 0.5}, {1.875, 2.375, 1.0625}};
   sheet.triangles = {{0, 1, 2}};
   const TriangleMesh mirrored = test::moved(sheet, {1, 1, -1}, {});  // as seen from the plane, it turns backwards
-  const TriangleMesh all = weld(test::joined(test::joined(upright, sheet), mirrored), {});
+  const TriangleMesh all = test::joined(test::joined(upright, sheet), mirrored);
   for (const Symmetry& symmetry : symmetries()) {
     const TriangleMesh mesh = transformed(all, symmetry);
     std::vector<Vec3> queries;

@@ -16,7 +16,6 @@
 #include "core/data/rule.h"
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/exterior_edges.h"
-#include "core/mesh/weld.h"
 #include "tests/core/mesh_as_surface_cases.h"
 #include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"
@@ -60,12 +59,12 @@ TEST(MeshAsSurface, IsTheBorderOfAClosedMeshWithFaults) {
   expect_volume(test::reversed(box), 1.0, {RuleKind::kNonzero});
   expect_volume(test::joined(box, test::reversed(box_at(1.5, 0.4))), 1.064, {RuleKind::kNonzero});
   expect_volume(test::joined(box, box_at(0.2, 0.4)), 0.936, {RuleKind::kOdd});
-  expect_volume(weld(test::joined(box, box), {}), 1.0);
-  expect_volume(weld(test::joined(box, test::box_mesh({1, 0, 0}, {2, 1, 1})), {}), 2.0);  // they share a side
-  expect_volume(test::joined(box, test::box_mesh({1, 0.2, 0.2}, {2, 0.7, 1.4})), 1.6);    // a part of one
-  expect_volume(test::cells_mesh({{0, 0, 0}, {1, 1, 0}}), 2.0);                           // an edge
-  expect_volume(test::cells_mesh({{0, 0, 0}, {1, 1, 1}}), 2.0);                           // a corner
-  expect_volume(test::cells_mesh({{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}}), 4.0);     // all of these
+  expect_volume(test::joined(box, box), 1.0);
+  expect_volume(test::joined(box, test::box_mesh({1, 0, 0}, {2, 1, 1})), 2.0);          // they share a side
+  expect_volume(test::joined(box, test::box_mesh({1, 0.2, 0.2}, {2, 0.7, 1.4})), 1.6);  // a part of one
+  expect_volume(test::cells_mesh({{0, 0, 0}, {1, 1, 0}}), 2.0);                         // an edge
+  expect_volume(test::cells_mesh({{0, 0, 0}, {1, 1, 1}}), 2.0);                         // a corner
+  expect_volume(test::cells_mesh({{0, 0, 0}, {1, 1, 0}, {1, 0, 1}, {0, 1, 1}}), 4.0);   // all of these
   TriangleMesh split = box;  // with a face of no area at an edge
   const Triangle first = split.triangles[0];
   split.vertices.push_back(0.5 * (split.vertices[first[0]] + split.vertices[first[1]]));

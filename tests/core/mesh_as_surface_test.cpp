@@ -18,7 +18,6 @@
 #include "core/data/coordinate_precision.h"
 #include "core/distance/distance.h"
 #include "core/evaluation/winding_number.h"
-#include "core/mesh/weld.h"
 #include "tests/core/mesh_as_surface_cases.h"
 #include "tests/support/shapes.h"
 
@@ -85,8 +84,8 @@ TEST(MeshAsSurface, MergingDoesNotAddUp) {
 
 TEST(MeshAsSurface, IsTheMeshWhereThatIsASolid) {
   const TriangleMesh cavity = test::joined(test::box_mesh({0, 0, 0}, {1, 1, 1}), test::reversed(box_at(0.2, 0.4)));
-  for (const TriangleMesh& mesh : {test::box_mesh({0, 0, 0}, {1, 2, 3}), weld(test::sphere(6), {}), blade(60), blade(5),
-                                   cavity, test::joined(box_at(0, 0.5), box_at(0.6, 0.3))}) {
+  for (const TriangleMesh& mesh : {test::box_mesh({0, 0, 0}, {1, 2, 3}), test::sphere(6), blade(60), blade(5), cavity,
+                                   test::joined(box_at(0, 0.5), box_at(0.6, 0.3))}) {
     for (const double side : {13.0, 40.7}) {
       const std::optional<FinishedSurface> made = kept(turned(mesh), side);
       ASSERT_TRUE(made);
@@ -145,7 +144,7 @@ TEST(MeshAsSurface, IsNoneWithOtherNodes) {
 }
 
 TEST(MeshAsSurface, IsNoneOfFineMeshes) {
-  const TriangleMesh fine = weld(test::sphere(40), {});
+  const TriangleMesh fine = test::sphere(40);
   EXPECT_FALSE(kept(fine, 4));
   EXPECT_FALSE(kept(fine, 8));
   EXPECT_TRUE(kept(fine, 40));
@@ -160,13 +159,13 @@ TEST(MeshAsSurface, IsNoneOfFineMeshes) {
 }
 
 TEST(MeshAsSurface, IsNoneWhereItWouldBeAnotherSurface) {
-  const TriangleMesh ball = weld(test::sphere(6), {});
+  const TriangleMesh ball = test::sphere(6);
   EXPECT_FALSE(kept(ball, 20, {.rule = {}, .thickness = 0.01}));
   EXPECT_FALSE(kept(ball, 20, {.rule = {}, .merge_planes = false}));
 }
 
 TEST(MeshAsSurface, IsRoundedToSinglePrecision) {
-  const TriangleMesh ball = weld(test::sphere(6), {});
+  const TriangleMesh ball = test::sphere(6);
   const std::optional<FinishedSurface> made = kept(ball, 20, {.rule = {}, .precision = CoordinatePrecision::kSingle});
   ASSERT_TRUE(made);
   TriangleMesh rounded = ball;
@@ -190,7 +189,7 @@ TEST(MeshAsSurface, KeepsNodesOnTheirSidesOfPlanesInSinglePrecision) {
     const Vec3 lower{-decimal(2), -decimal(2), -decimal(2)}, size{decimal(3), decimal(3), decimal(3)};
     const TriangleMesh box = test::box_mesh(lower, lower + size);
     const TriangleMesh beside = test::box_mesh({lower.x + size.x, lower.y, lower.z}, lower + 2.0 * size);
-    for (const TriangleMesh& mesh : {box, weld(test::joined(box, beside), {})}) {
+    for (const TriangleMesh& mesh : {box, test::joined(box, beside)}) {
       const Lattice lattice{lower, 0.125 * size, {-1, -1, -1}, {19, 19, 19}};
       const WindingNumberEvaluator evaluator(mesh);
       const NodeSet inside = nodes_inside(evaluator, {}, lattice);
@@ -207,7 +206,7 @@ TEST(MeshAsSurface, KeepsNodesOnTheirSidesOfPlanesInSinglePrecision) {
 }
 
 TEST(MeshAsSurface, IsSimplified) {
-  const TriangleMesh ball = weld(test::sphere(16), {});
+  const TriangleMesh ball = test::sphere(16);
   SurfaceOptions options;
   options.simplify = 0.02;
   const std::optional<FinishedSurface> made = kept(ball, 40, options);

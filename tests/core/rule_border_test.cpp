@@ -101,7 +101,7 @@ TEST(RuleBorder, GoesAroundWhatTheRuleHoldsFor) {
 TEST(RuleBorder, GoesAroundCellsThatShareSidesAndEdges) {
   test::Random random(2);
   for (int round = 0; round < 30; ++round) {
-    const TriangleMesh mesh = weld(test::joined(test::random_cells(random, 3), test::random_cells(random, 3)), {});
+    const TriangleMesh mesh = test::joined(test::random_cells(random, 3), test::random_cells(random, 3));
     for (const Rule& rule : kBorderRules) {
       EXPECT_EQ(wrong_points(mesh, rule, random, 20), 0) << round << " rule " << static_cast<int>(rule.kind);
     }

@@ -17,7 +17,6 @@
 #include "core/merging/checked_simplify.h"
 #include "core/merging/star_change.h"
 #include "core/mesh/used_part.h"
-#include "core/mesh/weld.h"
 #include "core/surface/surface.h"
 #include "core/surface/thicken.h"
 #include "tests/support/shapes.h"
@@ -49,7 +48,7 @@ double farthest(const TriangleMesh& of, const TriangleMesh& to) {
 }
 
 TEST(SimplifiedSurface, IsWithinTheDistanceBothWaysWithAllNodesOnTheirSides) {
-  const TriangleMesh mesh = weld(test::sphere(16), {});
+  const TriangleMesh mesh = test::sphere(16);
   const WindingNumberEvaluator evaluator(mesh);
   const NodeSet inside = nodes_inside(evaluator, {}, lattice_around_sphere(14));
   SurfaceOptions options;
@@ -69,11 +68,11 @@ TEST(SimplifiedSurface, IsWithinTheDistanceBothWaysWithAllNodesOnTheirSides) {
 // Bodies between the nodes that are thinner than the distance, which could make them flat, or turn them over.
 TEST(SimplifiedSurface, LeavesThinPartsAVolume) {
   Random random(7);
-  const TriangleMesh ball = weld(test::sphere(8), {});
+  const TriangleMesh ball = test::sphere(8);
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(ball), {}, lattice_around_sphere(14));
   int turned = 0;
   for (int round = 0; round < 60; ++round) {
-    TriangleMesh thin = weld(test::sphere(3 + round % 3), {});
+    TriangleMesh thin = test::sphere(3 + round % 3);
     for (Vec3& v : thin.vertices) v = {0.1 * v.x, 0.1 * v.y, 1.36 + 0.003 * v.z + uniform(random, -0.002, 0.002)};
     SurfaceMesh surface{test::joined(ball, thin), {}};
     surface.sources.assign(surface.mesh.triangles.size(), 0);
@@ -236,7 +235,7 @@ TEST(SimplifiedSurface, IsWithinTheDistanceWhereCoordinatesAreRounded) {
 
 // What a pull may cost does not make it look at more nodes: faces are where they are.
 TEST(SimplifiedSurface, TakesNoLongerForDistancesBeyondAllSizes) {
-  const TriangleMesh mesh = weld(test::open_box(), {});
+  const TriangleMesh mesh = test::open_box();
   const WindingNumberEvaluator evaluator(mesh);
   const NodeSet inside = nodes_inside(evaluator, {}, {{-0.3, -0.3, -0.3}, {0.2, 0.2, 0.2}, {0, 0, 0}, {9, 9, 9}});
   SurfaceOptions options;
@@ -265,7 +264,7 @@ TEST(StarChange, SeesNodesBetween) {
 }
 
 TEST(ThickSurface, IsAtItsDistanceOrWhereTheRuleEnds) {
-  const TriangleMesh mesh = weld(test::open_box(), {});
+  const TriangleMesh mesh = test::open_box();
   const WindingNumberEvaluator evaluator(mesh);
   const DistanceEvaluator distance(mesh);
   const Lattice lattice{{-0.5, -0.5, -0.5}, {0.1, 0.1, 0.1}, {0, 0, 0}, {21, 21, 21}};

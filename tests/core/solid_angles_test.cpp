@@ -41,7 +41,7 @@ constexpr double kTolerance = 1e-12;
 TEST(SolidAngles, SumUpToWhatCrossingsAndConeGive) {
   test::Random random(1);
   for (int i = 0; i < 20; ++i) {
-    const TriangleMesh mesh = weld(test::lattice_soup(random, 60, 4), {});
+    const TriangleMesh mesh = test::lattice_soup(random, 60, 4);
     const Lattice lattice = half_integers(-2, 13);
     EXPECT_LT(largest_difference(evaluate(mesh, lattice, kBothSums[0]), evaluate(mesh, lattice, kBothSums[1])),
               kTolerance);

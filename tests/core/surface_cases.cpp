@@ -17,7 +17,6 @@
 #include "core/contour/vertex_places.h"
 #include "core/distance/distance.h"
 #include "core/mesh/used_part.h"
-#include "core/mesh/weld.h"
 
 namespace raycone::test {
 
@@ -137,7 +136,7 @@ double volume_of(const TriangleMesh& mesh) {
 }
 
 TriangleMesh part_of_sphere(int rings, const std::function<bool(const Vec3&)>& has) {
-  TriangleMesh mesh = weld(test::sphere(rings), {});
+  TriangleMesh mesh = test::sphere(rings);
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
     return !has((1.0 / 3.0) * (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]));
   });

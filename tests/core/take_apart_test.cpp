@@ -16,7 +16,6 @@
 #include "core/data/lattice.h"
 #include "core/evaluation/winding_number.h"
 #include "core/mesh/components.h"
-#include "core/mesh/weld.h"
 #include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"
 
@@ -79,12 +78,12 @@ TEST(TakeApart, TakesCavitiesOffCorners) {
                             {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {1, 3, 2}, {1, 4, 3}}};
     return outward ? mesh : test::reversed(mesh);
   };
-  const TriangleMesh hollow = weld(test::joined(pyramid(1.0, 1.0, true), pyramid(0.3, 0.5, false)), {});
+  const TriangleMesh hollow = test::joined(pyramid(1.0, 1.0, true), pyramid(0.3, 0.5, false));
   EXPECT_FALSE(is_closed_and_embedded(hollow));
   expect_apart(hollow, 2);
   // Two pyramids that stand on each other's tips, one of them hollow.
   const TriangleMesh above = test::moved(pyramid(1.0, 1.0, false), {1, 1, -1}, {0, 0, 0});
-  expect_apart(weld(test::joined(hollow, above), {}), 3);
+  expect_apart(test::joined(hollow, above), 3);
 }
 
 // An edge that two walls share from end to end, where these are joined: its middle is taken apart.
@@ -137,7 +136,7 @@ TriangleMesh band(double z) {
 TEST(TakeApart, CutsCornersOffThatNoWayLeadsInto) {
   EXPECT_TRUE(is_closed_and_embedded(band(1.0)));
   EXPECT_TRUE(is_closed_and_embedded(band(-1.0)));
-  const TriangleMesh two = weld(test::joined(band(1.0), band(-1.0)), {});
+  const TriangleMesh two = test::joined(band(1.0), band(-1.0));
   const TriangleMesh box = test::box_mesh({-3, -3, -3}, {3, 3, 3});
   const TriangleMesh cavities = test::joined(box, test::reversed(two));
   for (const TriangleMesh& mesh : {two, cavities}) {
@@ -303,8 +302,8 @@ TEST(TakeApart, RefusesWhatHasNoSides) {
   EXPECT_FALSE(taken_apart(test::open_box()).is_apart);
   EXPECT_FALSE(taken_apart(test::fan(4, 4)).is_apart);
   const TriangleMesh box = test::box_mesh({0, 0, 0}, {1, 1, 1});
-  taken_apart(weld(test::joined(box, box), {}));  // ends
-  taken_apart(weld(test::joined(box, test::reversed(box)), {}));
+  taken_apart(test::joined(box, box));  // ends
+  taken_apart(test::joined(box, test::reversed(box)));
 }
 
 // Two faces are on the first one, which another one goes on behind the edge.

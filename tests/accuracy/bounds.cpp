@@ -157,23 +157,6 @@ int check_bounds(std::size_t values) {
 
 // ---- Bounded engines -------------------------------------------------------------------------------------------
 
-TriangleMesh with_holes(TriangleMesh mesh, Random& random, double part) {
-  std::erase_if(mesh.triangles, [&](const Triangle&) { return uniform(random, 0, 1) < part; });
-  return mesh;
-}
-
-// Faces moved apart a little: boundary everywhere.
-TriangleMesh loosened(const TriangleMesh& mesh, Random& random, double by) {
-  TriangleMesh loose;
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3 shift = test::uniform_point(random, {{-by, -by, -by}, {by, by, by}});
-    const auto first = static_cast<std::uint32_t>(loose.vertices.size());
-    for (const std::uint32_t v : t) loose.vertices.push_back(mesh.vertices[v] + shift);
-    loose.triangles.push_back({first, first + 1, first + 2});
-  }
-  return loose;
-}
-
 // Triangles of a soup, each a tenth as large: most are far from most samples.
 TriangleMesh dust(Random& random, int triangles) {
   TriangleMesh mesh = test::soup(random, triangles);
@@ -189,11 +172,11 @@ std::vector<NamedMesh> meshes_of_bounded_engines() {
   std::vector<NamedMesh> all;
   for (int n = 0; n < 5; ++n) {
     const std::string number = " " + std::to_string(n + 1);
-    all.push_back({"sphere with holes" + number, with_holes(test::sphere(7 + n), random, 0.1 + 0.05 * n)});
-    all.push_back({"loose sphere" + number, loosened(test::sphere(6), random, 0.004 * (n + 1))});
+    all.push_back({"sphere with holes" + number, test::with_holes(test::sphere(7 + n), random, 0.1 + 0.05 * n)});
+    all.push_back({"loose sphere" + number, test::loosened(test::sphere(6), random, 0.004 * (n + 1))});
     all.push_back({"dust" + number, dust(random, 60 + 40 * n)});
     all.push_back({"soup on a lattice" + number, test::lattice_soup(random, 80 + 30 * n, 8 + 4 * n)});
-    all.push_back({"scrambled sphere" + number, scrambled(with_holes(test::sphere(5), random, 0.2), random)});
+    all.push_back({"scrambled sphere" + number, scrambled(test::with_holes(test::sphere(5), random, 0.2), random)});
     const double stretch = std::pow(10.0, n - 2);
     all.push_back({"rolled strip" + number, test::moved(swiss_roll(), {1, stretch, 1 / stretch}, {0, 0, 10.0 * n})});
   }

@@ -97,14 +97,12 @@ TEST(CellTriangles, AreThoseThatComeIntoTheCell) {
   TriangleMesh mesh;
   for (const double beyond : {0.0, 0.5, 100.0}) {
     for (std::uint32_t n = 0; n < 60; ++n) {
-      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
       const Vec3 a = point_near(random, beyond), b = point_near(random, beyond);
       // Small ones, needles, large ones.
       const Vec3 c = n % 3 == 0   ? b + 0x1p-9 * (b - a)
                      : n % 3 == 1 ? a + 0.02 * (point_near(random, 1) - a)
                                   : point_near(random, beyond);
-      mesh.vertices.insert(mesh.vertices.end(), {a, n % 3 == 1 ? a + 0.02 * (b - a) : b, c});
-      mesh.triangles.push_back({first, first + 1, first + 2});
+      test::add_triangle(mesh, a, n % 3 == 1 ? a + 0.02 * (b - a) : b, c);
     }
   }
   expect_triangles_of_cells(mesh);

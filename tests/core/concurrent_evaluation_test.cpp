@@ -10,19 +10,12 @@
 #include "core/data/rule.h"
 #include "core/evaluation/winding_number.h"
 #include "core/machine/threads.h"
-#include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
 
 constexpr double kCritical = 0.3;  // no half-integer, which values are right about by themselves
-
-TriangleMesh sphere_with_holes() {
-  TriangleMesh mesh = test::sphere(24);
-  std::erase_if(mesh.triangles, [](const Triangle& t) { return (t[0] * 7 + t[1] + t[2]) % 5 == 0; });
-  return weld(std::move(mesh), {});
-}
 
 // All that is asked of an evaluator at once, as numbers.
 class Questions {
@@ -60,7 +53,7 @@ class Questions {
 class Concurrently : public testing::TestWithParam<Summation> {};
 
 TEST_P(Concurrently, ConstCallsGiveWhatTheyGiveOneByOne) {
-  const TriangleMesh mesh = sphere_with_holes();
+  const TriangleMesh mesh = test::sieve(24, 5);
   const EvaluatorOptions options{.summation = GetParam(), .accuracy = {.tolerance = 1e-6, .points = 300}};
   const Questions questions;
   std::vector<std::vector<double>> expected;
@@ -98,7 +91,7 @@ TEST(EstimatedSeconds, GrowWithTheLattice) {
     EXPECT_FALSE(estimate.at_most);
     return estimate.seconds;
   };
-  for (const TriangleMesh& mesh : {sphere_with_holes(), test::open_box(), test::sphere(10)}) {
+  for (const TriangleMesh& mesh : {test::sieve(24, 5), test::open_box(), test::sphere(10)}) {
     EXPECT_GT(seconds(mesh, 100), 0.0);
     EXPECT_LT(seconds(mesh, 400), 3600.0);
     // 64 times the samples; what is prepared, and the noise of a millisecond's timing, are in both.

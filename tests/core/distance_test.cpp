@@ -169,9 +169,7 @@ TEST(Distance, OfSamplesNextToNeedlesIsThatOfPoints) {
     TriangleMesh mesh = needles_of_cone(segments);
     for (const bool with_another : {false, true}) {
       if (with_another) {
-        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-        mesh.vertices.insert(mesh.vertices.end(), {{0.3, 0.1, 0.1}, {0.5, 0.2, 0.3}, {0.4, 0.5, 0.2}});
-        mesh.triangles.push_back({first, first + 1, first + 2});
+        test::add_triangle(mesh, {0.3, 0.1, 0.1}, {0.5, 0.2, 0.3}, {0.4, 0.5, 0.2});
       }
       const DistanceEvaluator distance(mesh);
       const std::vector<double> expected = at_points(distance, points);

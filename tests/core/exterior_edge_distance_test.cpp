@@ -33,10 +33,8 @@ constexpr std::array<Vec3, 8> kDirections{{{1, 0, 0},
 TriangleMesh book(const Vec3& d, double below, double above, int pages, Random& random) {
   TriangleMesh mesh;
   for (int i = 0; i < pages; ++i) {
-    const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
     const Vec3 tip = test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}});
-    mesh.vertices.insert(mesh.vertices.end(), {-below * d, above * d, tip});
-    mesh.triangles.push_back({n, n + 1, n + 2});
+    test::add_triangle(mesh, -below * d, above * d, tip);
   }
   return weld(mesh, {});
 }

@@ -24,19 +24,6 @@ WindingNumberEvaluator evaluator_of(const TriangleMesh& mesh, double tolerance, 
                                 {.level = level, .summation = Summation::kFarField, .accuracy = {tolerance, 1e6}});
 }
 
-// A soup: triangles of a sphere, each moved a little.
-TriangleMesh loose_sphere(test::Random& random, int rings) {
-  const TriangleMesh sphere = test::sphere(rings);
-  TriangleMesh soup;
-  for (const Triangle& t : sphere.triangles) {
-    const Vec3 shift = test::uniform_point(random, {{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}});
-    const auto first = static_cast<std::uint32_t>(soup.vertices.size());
-    for (const std::uint32_t v : t) soup.vertices.push_back(sphere.vertices[v] + shift);
-    soup.triangles.push_back({first, first + 1, first + 2});
-  }
-  return soup;
-}
-
 // A sphere with many holes, large and small.
 TriangleMesh sphere_with_holes(test::Random& random, int rings) {
   TriangleMesh mesh = test::sphere(rings);
@@ -49,7 +36,7 @@ TriangleMesh sphere_with_holes(test::Random& random, int rings) {
 
 std::vector<TriangleMesh> open_meshes() {
   test::Random random(1);
-  return {weld(loose_sphere(random, 16), {}), weld(sphere_with_holes(random, 40), {})};
+  return {test::loosened(test::sphere(16), random, 0.01), sphere_with_holes(random, 40)};
 }
 
 std::vector<Vec3> some_points(std::size_t count) {
@@ -174,7 +161,6 @@ TEST(FarField, IsTakenWhereItPays) {
   };
   TriangleMesh many = test::sphere(60);  // a hole in each of many places
   std::erase_if(many.triangles, [](const Triangle& t) { return (t[0] * 7 + t[1] + t[2]) % 3 == 0; });
-  many = weld(std::move(many), {});
   EXPECT_TRUE(takes(many, 1e-4, 1e6));
   EXPECT_FALSE(takes(many, 1e-4, 1e5)) << "the tree takes longer than it spares";
   EXPECT_FALSE(takes(test::open_box(), 1e-4, 1e9)) << "few edges";
@@ -192,17 +178,9 @@ TEST(FarField, CapsAreSmall) {
     ribbon.triangles.push_back({n - 2, n, n - 1});
     ribbon.triangles.push_back({n - 1, n, n + 1});
   }
-  const auto area_of = [](const TriangleMesh& mesh) {
-    double area = 0;
-    for (const Triangle& t : mesh.triangles) {
-      const Vec3 n = cross(mesh.vertices[t[1]] - mesh.vertices[t[0]], mesh.vertices[t[2]] - mesh.vertices[t[0]]);
-      area += std::sqrt(dot(n, n)) / 2;
-    }
-    return area;
-  };
   const TriangleMesh caps = make_caps(Boundary(weld(ribbon, {})), 0.0).mesh;
   EXPECT_EQ(caps.triangles.size(), 2 * kSteps);
-  EXPECT_LT(area_of(caps), 1.01 * area_of(ribbon));
+  EXPECT_LT(total_area(caps), 1.01 * total_area(ribbon));
 }
 
 }  // namespace

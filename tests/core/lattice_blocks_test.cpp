@@ -19,7 +19,6 @@
 #include "core/far/harmonic_error.h"
 #include "core/far/harmonic_fit.h"
 #include "core/far/lattice_blocks_walk.h"
-#include "core/mesh/weld.h"
 #include "tests/support/diagnosed.h"
 #include "tests/support/differences.h"
 #include "tests/support/shapes.h"
@@ -27,23 +26,8 @@
 namespace raycone {
 namespace {
 
+using test::dust;
 using test::Random;
-
-// Small triangles about a few points.
-TriangleMesh dust(Random& random, int triangles) {
-  TriangleMesh mesh;
-  for (int n = 0; n < triangles; ++n) {
-    const Vec3 centre{0.4 * std::cos(0.7 * n), 0.4 * std::sin(0.7 * n), test::uniform(random, -0.4, 0.4)};
-    for (int corner = 0; corner < 3; ++corner) {
-      Vec3 p = centre;
-      for (int axis = 0; axis < 3; ++axis) p[axis] += test::uniform(random, -0.01, 0.01);
-      mesh.vertices.push_back(p);
-    }
-    const auto first = static_cast<std::uint32_t>(3 * n);
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
-  return mesh;
-}
 
 Lattice cube_lattice(std::int64_t count) {
   const double spacing = 1.0 / static_cast<double>(count - 1);
@@ -252,23 +236,14 @@ TEST(LatticeBlocksTest, PartsAndLevelsHaveTheSameBitsByBoundaries) {
 
 // ---- Winding numbers -------------------------------------------------------------------------------------------
 
-// A sphere that is full of holes.
-TriangleMesh sieve() {
-  TriangleMesh mesh = test::moved(test::sphere(24), {0.45, 0.45, 0.45}, {0, 0, 0});
-  std::vector<Triangle> kept;
-  for (std::size_t n = 0; n < mesh.triangles.size(); ++n) {
-    if (n % 5 != 0) kept.push_back(mesh.triangles[n]);
-  }
-  mesh.triangles = std::move(kept);
-  return weld(std::move(mesh), {});
-}
+TriangleMesh small_sieve() { return test::moved(test::sieve(24, 5), {0.45, 0.45, 0.45}, {0, 0, 0}); }
 
 WindingNumberEvaluator evaluator(const TriangleMesh& mesh, double tolerance) {
   return WindingNumberEvaluator(mesh, {.summation = Summation::kBlocks, .accuracy = {tolerance}});
 }
 
 TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceOfTheDirectSum) {
-  const TriangleMesh mesh = sieve();
+  const TriangleMesh mesh = small_sieve();
   const Lattice lattice = cube_lattice(64);
   std::vector<double> direct(64 * 64 * 4), values(64 * 64 * 4);
   const LatticeBlock layers{{0, 0, 30}, {64, 64, 4}};  // across which slabs are cut
@@ -288,7 +263,7 @@ TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceOfTheDirectSum) {
 // Coordinates there tell nodes of fits apart as roughly as samples.
 TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceFarFromTheOrigin) {
   for (const double offset : {0x1p20, 0x1p26, 0x1p32}) {
-    TriangleMesh mesh = sieve();
+    TriangleMesh mesh = small_sieve();
     for (Vec3& v : mesh.vertices) {
       for (int axis = 0; axis < 3; ++axis) v[axis] += offset;
     }
@@ -317,10 +292,7 @@ TriangleMesh sheets(double offset, int count, double t) {
   TriangleMesh mesh;
   for (int n = 0; n < count; ++n) {
     const double x = offset - t - n * step;
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(),
-                         {{x, offset - 7, offset}, {x, offset, offset - 14}, {x, offset + 7, offset}});
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    test::add_triangle(mesh, {x, offset - 7, offset}, {x, offset, offset - 14}, {x, offset + 7, offset});
   }
   return mesh;
 }
@@ -375,7 +347,7 @@ TEST(LatticeBlocksTest, MovedNodesOfFitsKeepTheToleranceAtPoints) {
 }
 
 TEST(LatticeBlocksTest, SamplesAreDoneOnce) {
-  const TriangleMesh mesh = sieve();
+  const TriangleMesh mesh = small_sieve();
   const Lattice lattice = cube_lattice(12);  // of whole blocks and parts
   const auto count = static_cast<std::size_t>(whole(lattice).size());
   test::Diagnosed found(count);
@@ -413,7 +385,7 @@ TEST(LatticeBlocksTest, HalfIntegersStayHalfIntegers) {
 
 // A sieve so small, beside a box, that squares of its triangles' areas are no doubles. The box is nowhere on the rays.
 TEST(LatticeBlocksTest, AreasWhoseSquaresUnderflowAreNotNothing) {
-  const TriangleMesh alone = sieve();
+  const TriangleMesh alone = small_sieve();
   const Lattice lattice = cube_lattice(24);
   std::vector<double> expected(24 * 24 * 24), values(expected.size());
   evaluator(alone, 0.0).evaluate(lattice, whole(lattice), expected);
@@ -444,7 +416,7 @@ TEST(LatticeBlocksTest, WhatIsTooFarAwayToBeSeenIsNothing) {
   for (const int exponent : {-33, -100}) {
     const double unit = std::ldexp(1.0, exponent);
     const TriangleMesh mesh =
-        test::joined(test::moved(sieve(), {unit, unit, unit}, {}), test::box_mesh({0.5, 0.5, 0.5}, {1, 1, 1}));
+        test::joined(test::moved(small_sieve(), {unit, unit, unit}, {}), test::box_mesh({0.5, 0.5, 0.5}, {1, 1, 1}));
     for (const double away : {1e280, 1e296, 1e299, 1e306}) {
       const Lattice far{away * near.origin, away * near.spacing, near.index_min, near.counts};
       for (const Summation summation : {Summation::kBlocks, Summation::kFarField}) {

@@ -12,7 +12,6 @@
 #include "core/evaluation/winding_number.h"
 #include "core/machine/threads.h"
 #include "core/mesh/exterior_edges.h"
-#include "core/mesh/weld.h"
 #include "tests/support/diagnosed.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/lattice_samples.h"
@@ -142,9 +141,7 @@ TriangleMesh sheets(int count) {
   TriangleMesh mesh;
   for (int i = 0; i < count; ++i) {
     const double x = i / static_cast<double>(count);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {{x, 0, 0}, {x, 1, 0}, {x, 0, 1}});
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    test::add_triangle(mesh, {x, 0, 0}, {x, 1, 0}, {x, 0, 1});
   }
   return mesh;
 }
@@ -204,7 +201,7 @@ void expect_slabs(const WindingNumberEvaluator& evaluator, const Lattice& lattic
 std::vector<TriangleMesh> meshes_to_cut() {
   test::Random random(2);
   return {sheets(40),
-          weld(test::lattice_soup(random, 30, 3), {}),
+          test::lattice_soup(random, 30, 3),
           test::soup(random, 20),
           test::random_cells(random, 3),
           test::open_box(),

@@ -63,7 +63,7 @@ TEST(MeshAsSurface, TakesAFinelyDividedRimForOneHole) {
 }
 
 TEST(MeshAsSurface, ClosesHolesAlongTheThreshold) {
-  const TriangleMesh sphere = weld(test::sphere(10), {});
+  const TriangleMesh sphere = test::sphere(10);
   for (const TriangleMesh& mesh :
        {test::open_box(), test::joined(box_at(2, 0.5), test::open_box()), without(sphere, {{-2, -2, 0.8}, {2, 2, 2}}),
         without(sphere, {{0.2, 0.1, 0.3}, {2, 2, 0.8}})}) {
@@ -162,7 +162,7 @@ TEST(MeshAsSurface, ClosesCracksOfRoundingsWithoutFaces) {
 // sheet has nothing inside but what it is near to.
 TEST(MeshAsSurface, IsNoneOfMeshesThatAreMostlyHole) {
   const TriangleMesh pipe =
-      without(without(weld(test::sphere(10), {}), {{-2, -2, 0.4}, {2, 2, 2}}), {{-2, -2, -2}, {2, 2, -0.4}});
+      without(without(test::sphere(10), {{-2, -2, 0.4}, {2, 2, 2}}), {{-2, -2, -2}, {2, 2, -0.4}});
   EXPECT_FALSE(kept(turned(pipe), 20));
 }
 
@@ -170,9 +170,7 @@ TEST(MeshAsSurface, IsNoneOfMeshesThatAreMostlyHole) {
 // sheet's caps leave outside.
 TEST(MeshAsSurface, HasIslandsAroundNodesBehindSheets) {
   TriangleMesh mesh = test::open_box();
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), {{0.4, 0.4, 2.105}, {0.8, 0.4, 2.105}, {0.6, 0.8, 2.105}});
-  mesh.triangles.push_back({first, first + 1, first + 2});
+  test::add_triangle(mesh, {0.4, 0.4, 2.105}, {0.8, 0.4, 2.105}, {0.6, 0.8, 2.105});
   const Lattice lattice{{-0.4, -0.4, -0.4}, {0.25, 0.25, 0.25}, {0, 0, 0}, {10, 10, 13}};
   const WindingNumberEvaluator evaluator(mesh);
   const NodeSet inside = nodes_inside(evaluator, {}, lattice);
@@ -188,8 +186,7 @@ TEST(MeshAsSurface, HasIslandsAroundNodesBehindSheets) {
 // Beyond 2^64 the mesh is scaled. Of so many holes, evaluators differ by what they are made for.
 TEST(MeshAsSurface, IsTheSameInEveryUnitWithTwoEvaluators) {
   test::Random random(8);
-  TriangleMesh sieve = weld(test::sphere(40), {});
-  std::erase_if(sieve.triangles, [&](const Triangle&) { return test::uniform(random, 0.0, 1.0) < 0.1; });
+  const TriangleMesh sieve = test::with_holes(test::sphere(40), random, 0.1);
   const auto made = [&](double unit) {
     const TriangleMesh mesh = test::moved(sieve, {unit, unit, unit}, {0, 0, 0});
     const double h = 0.1 * unit, first = -1.25 * unit;

@@ -355,17 +355,7 @@ TEST(Orient, TurnsAnOpenBowlSoThatItsHollowIsInside) {
 
 TEST(Orient, TurnsSeparatePiecesOfOneSurfaceAlike) {
   // The sides of a box that do not meet.
-  TriangleMesh sides;
-  for (const TriangleMesh& whole : {box_mesh({0, 0, 0}, {1, 1, 1})}) {
-    for (const Triangle& t : whole.triangles) {
-      const auto first = static_cast<std::uint32_t>(sides.vertices.size());
-      const Vec3 a = whole.vertices[t[0]], b = whole.vertices[t[1]], c = whole.vertices[t[2]];
-      const Vec3 middle = (1.0 / 3) * (a + b + c);
-      for (const Vec3& p : {a, b, c}) sides.vertices.push_back(middle + 0.9 * (p - middle));
-      sides.triangles.push_back({first, first + 1, first + 2});
-    }
-  }
-  expect_restored(sides);
+  expect_restored(test::shrunk_faces(box_mesh({0, 0, 0}, {1, 1, 1}), 0.9));
 }
 
 TEST(Orient, TurnsAHoleyHollowSphere) {
@@ -412,12 +402,12 @@ TEST(Orient, TakesWhatIsPartlyInAnOpenBodyForNoCavity) {
 TEST(Orient, TurnsManySeparateTriangles) {
   // More than the number of surfaces that each act on every sample.
   Random random(13);
-  TriangleMesh ball = sphere_of(1, {}, 24), separate;
+  const TriangleMesh ball = sphere_of(1, {}, 24);
+  TriangleMesh separate;
   for (const Triangle& t : ball.triangles) {
-    const auto first = static_cast<std::uint32_t>(separate.vertices.size());
-    for (const std::uint32_t v : t)
-      separate.vertices.push_back(ball.vertices[v] + 1e-3 * test::uniform_point(random, {{}, {1, 1, 1}}));
-    separate.triangles.push_back({first, first + 1, first + 2});
+    auto [a, b, c] = corners_of(ball, t);
+    for (Vec3* p : {&a, &b, &c}) *p = *p + 1e-3 * test::uniform_point(random, {{}, {1, 1, 1}});
+    test::add_triangle(separate, a, b, c);
   }
   const TriangleMesh oriented = automatic(with_faces_reversed(separate, random, 0.5));
   std::size_t wrong = 0;
@@ -430,9 +420,7 @@ TEST(Orient, TurnsManyTrianglesAroundOnePoint) {
   TriangleMesh mesh;
   for (int n = 1; n <= 600; ++n) {
     const double s = n;
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {{-s, 0, s}, {0, s, -s}, {s, -s, 0}});
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    test::add_triangle(mesh, {-s, 0, s}, {0, s, -s}, {s, -s, 0});
     if (n % 3 == 0) reverse(mesh.triangles.back());
   }
   const TriangleMesh turned = automatic(mesh);
@@ -486,9 +474,8 @@ TEST(Orient, TurnsNoFacesWithEqualCornersAndLeavesEachOnce) {
 TEST(Orient, FindsCopiesOfVerticesThatWereNotWelded) {
   TriangleMesh loose;
   for (const TriangleMesh ball = sphere_of(1); const Triangle& t : ball.triangles) {
-    const auto first = static_cast<std::uint32_t>(loose.vertices.size());
-    for (const std::uint32_t v : t) loose.vertices.push_back(ball.vertices[v]);
-    loose.triangles.push_back({first, first + 1, first + 2});
+    const auto [a, b, c] = corners_of(ball, t);
+    test::add_triangle(loose, a, b, c);
   }
   Random random(4);
   const OrientedMesh oriented = orient(with_faces_reversed(loose, random, 0.5), Orient::kAuto);

@@ -23,28 +23,9 @@ using test::Random;
 
 constexpr double kPoints = 60'000;
 
-// A sphere that is full of holes.
-TriangleMesh sieve() {
-  TriangleMesh mesh = test::sphere(30);
-  for (std::size_t n = mesh.triangles.size(); n-- > 0;) {
-    if (n % 5 == 0) mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(n));
-  }
-  return weld(std::move(mesh), {});
-}
-
-// Small ones, about a few rings.
 TriangleMesh loose_triangles() {
   Random random(3);
-  TriangleMesh soup;
-  for (int n = 0; n < 400; ++n) {
-    const Vec3 centre{0.4 * std::cos(0.7 * n), 0.4 * std::sin(0.7 * n), test::uniform(random, -0.4, 0.4)};
-    for (int corner = 0; corner < 3; ++corner) {
-      soup.vertices.push_back(centre + test::uniform_point(random, {{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}}));
-    }
-    const auto first = static_cast<std::uint32_t>(3 * n);
-    soup.triangles.push_back({first, first + 1, first + 2});
-  }
-  return weld(std::move(soup), {});
+  return weld(test::dust(random, 400), {});
 }
 
 WindingNumberEvaluator evaluator_of(const TriangleMesh& mesh, double tolerance, SimdLevel level = SimdLevel::kBest) {
@@ -74,7 +55,7 @@ std::vector<double> values_of(const WindingNumberEvaluator& evaluator, std::span
 }
 
 TEST(PointBlocksTest, ValuesAreWithinTheToleranceOfTheDirectSum) {
-  for (const TriangleMesh& mesh : {sieve(), loose_triangles()}) {
+  for (const TriangleMesh& mesh : {test::sieve(30, 5), loose_triangles()}) {
     const std::vector<Vec3> points = some_points(mesh, 6000);
     const std::vector<double> direct = values_of(evaluator_of(mesh, 0.0), points);
     for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
@@ -93,7 +74,7 @@ TEST(PointBlocksTest, ValuesAreWithinTheToleranceOfTheDirectSum) {
 }
 
 TEST(PointBlocksTest, AQueryHasTheSameBitsAnywhere) {
-  const TriangleMesh mesh = sieve();
+  const TriangleMesh mesh = test::sieve(30, 5);
   const std::vector<Vec3> points = some_points(mesh, 3000);
   const std::vector<double> values = values_of(evaluator_of(mesh, 1e-8), points);
   for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2}) {

@@ -144,9 +144,7 @@ TriangleMesh needles(test::Random& random, int count) {
   for (int i = 0; i < count; ++i) {
     const Vec3 a = test::uniform_point(random, box), b = test::uniform_point(random, box);
     const Vec3 c = i % 3 == 0 ? a + Vec3{0.5, 0, 0} : a + 1e-3 * (test::uniform_point(random, box) - a);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    test::add_triangle(mesh, a, b, c);
   }
   return mesh;
 }

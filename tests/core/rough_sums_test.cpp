@@ -104,9 +104,7 @@ Seen look_at_boxes(const TriangleMesh& mesh, const LatticeRows& rows, double eac
 TriangleMesh scraps() {
   TriangleMesh mesh = test::moved(test::sphere(16), {0.4, 0.4, 0.4}, {0.01, 0.02, 0.03});
   mesh.triangles.resize(mesh.triangles.size() * 3 / 4);
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), {{-0.5, 0.1, 0.1}, {0.5, 0.11, 0.1}, {0.5, 0.12, 0.11}});
-  mesh.triangles.push_back({first, first + 1, first + 2});
+  test::add_triangle(mesh, {-0.5, 0.1, 0.1}, {0.5, 0.11, 0.1}, {0.5, 0.12, 0.11});
   return mesh;
 }
 

@@ -100,7 +100,7 @@ TEST(RuleBlocks, HoldOnLatticesThatAreFullOfTies) {
     std::size_t n = 0;  // holes enough: of few edges values tell, not certificates
     std::erase_if(cells.triangles, [&](const Triangle&) { return n++ % 20 == 0; });
     EXPECT_GT(certified(weld(cells, {}), integers(-4, 41, 0.125)), 100'000);
-    EXPECT_GT(certified(weld(test::lattice_soup(random, 30, 4), {}), integers(-6, 33, 0.25)), 100'000);
+    EXPECT_GT(certified(test::lattice_soup(random, 30, 4), integers(-6, 33, 0.25)), 100'000);
   }
 }
 
@@ -196,25 +196,16 @@ void expect_rough_sums_to_hold(const TriangleMesh& mesh, const Lattice& lattice,
   EXPECT_LT(terms.near, kRules.size() * size * exterior_edges(mesh).size() / 4) << "most was summed edge by edge";
 }
 
-// One triangle of so many is missing.
-TriangleMesh sphere_with_holes(int rings, std::size_t each) {
-  TriangleMesh mesh = test::sphere(rings);
-  for (std::size_t n = mesh.triangles.size(); n-- > 0;) {
-    if (n % each == 3) mesh.triangles.erase(mesh.triangles.begin() + static_cast<std::ptrdiff_t>(n));
-  }
-  return mesh;
-}
-
 // Certificates decide little; samples begin in the middle of rows and of blocks.
 TEST(Sides, HoldByRoughSums) {
-  const TriangleMesh mesh = sphere_with_holes(16, 8);
+  const TriangleMesh mesh = test::sieve(16, 8);
   EXPECT_LT(exterior_edges(mesh).size(), 1000U);
   expect_rough_sums_to_hold(mesh, lattice_around(mesh, 100), {{5, 3, 40}, {80, 75, 12}});
 }
 
 // From a thousand exterior edges on, one for ten faces or more.
 TEST(Sides, HoldByRoughSumsAlone) {
-  const TriangleMesh mesh = sphere_with_holes(30, 8);
+  const TriangleMesh mesh = test::sieve(30, 8);
   const std::size_t edges = exterior_edges(mesh).size();
   EXPECT_GE(edges, 1000U);
   EXPECT_GT(10 * edges, mesh.triangles.size());
@@ -223,22 +214,14 @@ TEST(Sides, HoldByRoughSumsAlone) {
 
 // Some of the blocks wait for the tree, since certificates decide others.
 TEST(Sides, HoldByRoughSumsWhereFewBlocksNeedThem) {
-  const TriangleMesh mesh = sphere_with_holes(30, 50);
+  const TriangleMesh mesh = test::sieve(30, 50);
   EXPECT_LT(10 * exterior_edges(mesh).size(), mesh.triangles.size());
   expect_rough_sums_to_hold(mesh, lattice_around(mesh, 140), {{0, 0, 60}, {140, 140, 9}});
 }
 
 // A soup: no two triangles of a sphere meet. Where there are few samples, their values tell.
 TEST(Sides, HoldByRoughSumsOfSoups) {
-  TriangleMesh mesh;
-  const TriangleMesh sphere = test::sphere(16);
-  for (const Triangle& t : sphere.triangles) {
-    const Vec3 &a = sphere.vertices[t[0]], &b = sphere.vertices[t[1]], &c = sphere.vertices[t[2]];
-    const Vec3 middle = (1.0 / 3.0) * (a + b + c);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const Vec3& v : {a, b, c}) mesh.vertices.push_back(0.05 * middle + 0.95 * v);
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  }
+  const TriangleMesh mesh = test::shrunk_faces(test::sphere(16), 0.95);
   EXPECT_EQ(exterior_edges(mesh).size(), 3 * mesh.triangles.size());
   const LatticeBlock block{{5, 3, 40}, {80, 75, 12}};
   const Lattice lattice = lattice_around(mesh, 100);

@@ -73,9 +73,7 @@ struct Levels {
 
   void add(Vec3 a, Vec3 b, Vec3 c) {
     a.z = b.z = c.z = static_cast<double>(mesh.triangles.size());
-    const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
-    mesh.triangles.push_back({n, n + 1, n + 2});
+    test::add_triangle(mesh, a, b, c);
   }
   // Points on each level, of a drawing of `count`.
   [[nodiscard]] std::vector<std::size_t> counts(std::uint64_t count) const {

@@ -59,9 +59,7 @@ TEST(SurfaceMeasures, TellFacesNextToTheSurfaceFromItsOwn) {
   const auto dropped_at = [&, &surface = surface](double voxels) {
     const double x = voxels * lattice.spacing.x;
     TriangleMesh mesh = box;
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {{x, 0.2, 0.2}, {x, 0.8, 0.2}, {x, 0.2, 0.8}});
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    test::add_triangle(mesh, {x, 0.2, 0.2}, {x, 0.8, 0.2}, {x, 0.2, 0.8});
     return dropped_of(surface, mesh, inside, SurfaceFaces::kOfMesh).area;
   };
   EXPECT_EQ(dropped_at(0.001), 0.0);
@@ -93,9 +91,7 @@ TEST(SurfaceMeasures, DropWhatIsFarPointByPoint) {
   };
   for (std::uint32_t n = 0; n < 300; ++n) {  // large ones, small ones, and needles, in and out of the box
     const Vec3 a = Vec3{0.5, 0.5, 0.5} + point(0.7), to_b = point(n % 3 == 0 ? 0.9 : 0.05), to_c = point(0.05);
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {a, a + to_b, n % 7 == 0 ? mesh.vertices[0] : a + to_c});
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    test::add_triangle(mesh, a, a + to_b, n % 7 == 0 ? mesh.vertices[0] : a + to_c);
   }
   const NodeSet inside = nodes_inside(WindingNumberEvaluator(mesh), Rule{}, lattice);
   for (const SurfaceFaces faces : {SurfaceFaces::kOfContour, SurfaceFaces::kOfMesh}) {

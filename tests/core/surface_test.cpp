@@ -311,10 +311,8 @@ TEST(Surface, HasTheSourcesWhosePlanesItsFacesAreIn) {
 TriangleMesh cuboctahedron() {
   TriangleMesh mesh;
   const auto add = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
     const bool is_outward = dot(cross(q - p, r - p), p) > 0.0;
-    mesh.vertices.insert(mesh.vertices.end(), {p, is_outward ? q : r, is_outward ? r : q});
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    test::add_triangle(mesh, p, is_outward ? q : r, is_outward ? r : q);
   };
   for (const double x : {-1.0, 1.0}) {
     for (const double y : {-1.0, 1.0}) {
@@ -563,8 +561,7 @@ TEST(Surface, FollowsItsRule) {
 // Simplified faces may reach from the mesh into what closes a hole: these are of no triangle.
 TEST(Surface, SimplifiedFacesWithASourceAreNearIt) {
   Random random(3);
-  TriangleMesh sieve = rotated(weld(test::sphere(24), {}));
-  std::erase_if(sieve.triangles, [&](const Triangle&) { return uniform(random, 0.0, 1.0) < 0.1; });
+  const TriangleMesh sieve = rotated(test::with_holes(test::sphere(24), random, 0.1));
   for (const double simplify : {0.05, 0.01}) {  // voxels are 0.12
     SurfaceOptions options;
     options.simplify = simplify;

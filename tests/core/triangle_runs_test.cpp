@@ -9,6 +9,8 @@
 #include <random>
 #include <vector>
 
+#include "tests/support/shapes.h"
+
 namespace raycone {
 namespace {
 
@@ -82,9 +84,7 @@ TEST(TriangleRuns, AreCloseTogetherBesideStrayTriangles) {
   const std::vector<std::uint32_t> position = shuffled(kRow);
   TriangleMesh mesh = in_a_row(position, 0, 1.0);
   for (const double at : {1e15, -1e15}) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {{at, 0, 0}, {1.5 * at, 0, 0}, {at, at, 0}});
-    mesh.triangles.push_back({first, first + 1, first + 2});
+    test::add_triangle(mesh, {at, 0, 0}, {1.5 * at, 0, 0}, {at, at, 0});
   }
   const std::vector<std::uint32_t> order = triangles_in_runs(mesh, kWidth);
   ASSERT_EQ(order.size(), kRow + 2);

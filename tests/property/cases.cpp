@@ -81,9 +81,7 @@ TriangleMesh any_slivers(Random& random) {
     const Vec3 a = uniform_point(random, unit), b = uniform_point(random, unit);
     const double offset = chance(random, 0.2) ? 0.0 : std::pow(10.0, -uniform(random, 6, 16));
     const Vec3 c = a + uniform(random, -0.5, 1.5) * (b - a) + offset * uniform_point(random, unit);
-    const auto n = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
-    mesh.triangles.push_back({n, n + 1, n + 2});
+    add_triangle(mesh, a, b, c);
   }
   return weld(mesh, {});
 }

@@ -12,12 +12,6 @@ namespace {
 
 int below(Random& random, int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); }
 
-void add_triangle(TriangleMesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-  mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
-  mesh.triangles.push_back({first, first + 1, first + 2});
-}
-
 void add_quad(TriangleMesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   add_triangle(mesh, a, b, c);
   add_triangle(mesh, a, c, d);
@@ -45,6 +39,12 @@ Vec3 uniform_point(Random& random, const Box& box) {
   const double x = uniform(random, box.lower.x, box.upper.x);
   const double y = uniform(random, box.lower.y, box.upper.y);
   return {x, y, uniform(random, box.lower.z, box.upper.z)};
+}
+
+void add_triangle(TriangleMesh& mesh, const Vec3& a, const Vec3& b, const Vec3& c) {
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
+  mesh.triangles.push_back({first, first + 1, first + 2});
 }
 
 TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper) {
@@ -78,6 +78,15 @@ TriangleMesh sphere(int rings) {
   return weld(mesh, {});
 }
 
+TriangleMesh sieve(int rings, std::size_t each) {
+  const TriangleMesh whole = sphere(rings);
+  TriangleMesh mesh{whole.vertices, {}};
+  for (std::size_t n = 0; n < whole.triangles.size(); ++n) {
+    if (n % each != 0) mesh.triangles.push_back(whole.triangles[n]);
+  }
+  return mesh;
+}
+
 TriangleMesh soup(Random& random, int triangles) {
   TriangleMesh mesh;
   const Box unit{{0, 0, 0}, {1, 1, 1}};
@@ -99,6 +108,17 @@ TriangleMesh lattice_soup(Random& random, int triangles, int size) {
     add_triangle(mesh, a, b, corner());
   }
   return weld(mesh, {});
+}
+
+TriangleMesh dust(Random& random, int triangles) {
+  TriangleMesh mesh;
+  for (int n = 0; n < triangles; ++n) {
+    const Vec3 middle{0.4 * std::cos(0.7 * n), 0.4 * std::sin(0.7 * n), uniform(random, -0.4, 0.4)};
+    const auto corner = [&] { return middle + uniform_point(random, {{-0.01, -0.01, -0.01}, {0.01, 0.01, 0.01}}); };
+    const Vec3 a = corner(), b = corner();
+    add_triangle(mesh, a, b, corner());
+  }
+  return mesh;
 }
 
 TriangleMesh cells_mesh(const std::vector<std::array<int, 3>>& cells) {
@@ -157,33 +177,54 @@ TriangleMesh fan(int triangles, int same) {
 TriangleMesh assorted_triangles() {
   Random random(1);
   TriangleMesh mesh;
-  const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    mesh.vertices.insert(mesh.vertices.end(), {a, b, c});
-    mesh.triangles.push_back({first, first + 1, first + 2});
-  };
   const auto point = [&] { return uniform_point(random, {{0, 0, 0}, {1, 1, 1}}); };
   for (int n = 0; n < 6; ++n) {
     const Vec3 a = point(), b = point();
-    add(a, b, point());
+    add_triangle(mesh, a, b, point());
   }
   for (int n = 0; n < 200; ++n) {
     const Vec3 at = point(), side = 0.03 * point();
-    add(at, at + side, at + 0.03 * point());
+    add_triangle(mesh, at, at + side, at + 0.03 * point());
   }
   const Vec3 a = point(), b = point();
-  add(a, b, a + 0.3 * (b - a) + 1e-9 * point());
-  add(a, b, b);
-  add({0.9, 0.1, 0.1}, {0.9, 0.1, 0.1}, {0.9, 0.1, 0.1});
-  add({-3, 0.5, 0.5}, {5, 0.4, 0.5}, {5, 0.5, 0.6});
-  add({0.2, 0, 0}, {0.2, 1, 0}, {0.2, 0, 1});
-  add({0, 0.6, 0}, {1, 0.6, 0}, {0, 0.6, 1});
+  add_triangle(mesh, a, b, a + 0.3 * (b - a) + 1e-9 * point());
+  add_triangle(mesh, a, b, b);
+  add_triangle(mesh, {0.9, 0.1, 0.1}, {0.9, 0.1, 0.1}, {0.9, 0.1, 0.1});
+  add_triangle(mesh, {-3, 0.5, 0.5}, {5, 0.4, 0.5}, {5, 0.5, 0.6});
+  add_triangle(mesh, {0.2, 0, 0}, {0.2, 1, 0}, {0.2, 0, 1});
+  add_triangle(mesh, {0, 0.6, 0}, {1, 0.6, 0}, {0, 0.6, 1});
   return mesh;
 }
 
 TriangleMesh reversed(TriangleMesh mesh) {
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
+}
+
+TriangleMesh with_holes(TriangleMesh mesh, Random& random, double probability) {
+  std::erase_if(mesh.triangles, [&](const Triangle&) { return uniform(random, 0, 1) < probability; });
+  return mesh;
+}
+
+TriangleMesh loosened(const TriangleMesh& mesh, Random& random, double most) {
+  TriangleMesh loose;
+  for (const Triangle& t : mesh.triangles) {
+    const auto [a, b, c] = corners_of(mesh, t);
+    const Vec3 shift = uniform_point(random, {{-most, -most, -most}, {most, most, most}});
+    add_triangle(loose, a + shift, b + shift, c + shift);
+  }
+  return loose;
+}
+
+TriangleMesh shrunk_faces(const TriangleMesh& mesh, double factor) {
+  TriangleMesh shrunk;
+  for (const Triangle& t : mesh.triangles) {
+    const auto [a, b, c] = corners_of(mesh, t);
+    const Vec3 middle = (1.0 / 3.0) * (a + b + c);
+    add_triangle(shrunk, middle + factor * (a - middle), middle + factor * (b - middle),
+                 middle + factor * (c - middle));
+  }
+  return shrunk;
 }
 
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b) {

@@ -10,6 +10,7 @@
 #include "tests/support/diagnosed.h"
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -110,8 +111,7 @@ TEST(Diagnostics, ChangeNoValueAndAddUpToTheTally) {
   std::vector<Vec3> queries;
   for (int i = 0; i < 343; ++i) queries.push_back({i % 7 * 0.5 - 0.5, i / 7 % 7 * 0.5, i / 49 * 0.5});
   const Diagnosed d = diagnosed_at(mesh, queries);
-  std::vector<double> plain(queries.size());
-  WindingNumberEvaluator(mesh).evaluate(queries, plain);
+  const std::vector<double> plain = test::values_of(WindingNumberEvaluator(mesh), queries);
   EXPECT_EQ(d.values, plain);
   std::uint64_t degenerate = 0, on_surface = 0;
   for (std::size_t i = 0; i < queries.size(); ++i) {

@@ -14,6 +14,7 @@
 #include "core/exact/direct_distance.h"
 #include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -32,19 +33,13 @@ std::vector<double> band_of(const DistanceEvaluator& distance, const Lattice& la
   return distances;
 }
 
-std::vector<double> at_points(const DistanceEvaluator& distance, const std::vector<Vec3>& points) {
-  std::vector<double> distances(points.size());
-  distance.evaluate(points, distances);
-  return distances;
-}
-
 TEST(Distance, OfPointsIsThatOfTheOracle) {
   const TriangleMesh mesh = test::assorted_triangles();
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
   for (int n = 0; n < 3000; ++n) points.push_back({normal(random), normal(random), normal(random)});
-  const std::vector<double> distances = at_points(DistanceEvaluator(mesh), points);
+  const std::vector<double> distances = test::values_of(DistanceEvaluator(mesh), points);
   for (std::size_t n = 0; n < points.size(); ++n) {
     // Some dozens of roundings of numbers below 10.
     EXPECT_NEAR(distances[n], static_cast<double>(direct_distance(mesh, points[n])), 1e-13);
@@ -79,7 +74,7 @@ TEST(Distance, OfPointsWithinALimitIsWhatItIsWithout) {
   std::normal_distribution<double> normal;
   std::vector<Vec3> points;
   for (int n = 0; n < 1000; ++n) points.push_back({normal(random), normal(random), normal(random)});
-  const std::vector<double> distances = at_points(distance, points);
+  const std::vector<double> distances = test::values_of(distance, points);
   for (const double limit : {0.0, 1e-200, 0.1, distances[0], std::nextafter(distances[0], 0.0), 1.0, 100.0}) {
     std::vector<double> limited(points.size());
     distance.evaluate(points, limited, limit);
@@ -108,7 +103,7 @@ TEST(Distance, OfPointsNextToNeedlesIsTheLeastOfAll) {
       const double off = std::pow(10.0, 8 * uniform(random) - 8);
       points.push_back(on + off * Vec3{uniform(random), uniform(random), uniform(random)});
     }
-    const std::vector<double> distances = at_points(DistanceEvaluator(mesh), points);
+    const std::vector<double> distances = test::values_of(DistanceEvaluator(mesh), points);
     for (std::size_t n = 0; n < points.size(); ++n)
       EXPECT_EQ(distances[n], least_of_all(mesh, points[n])) << segments << " segments, point " << n;
   }
@@ -144,14 +139,14 @@ TEST(Distance, OfManyPointsIsThatOfFew) {
   while (points.size() < (std::size_t{1} << 20) + 5000) {
     points.push_back(test::uniform_point(random, {{-1, -1, -1}, {2, 2, 2}}));
   }
-  const std::vector<double> distances = at_points(distance, points);
+  const std::vector<double> distances = test::values_of(distance, points);
   std::vector<std::uint32_t> nearest(points.size());
   distance.find_nearest(points, nearest);
   constexpr std::size_t kFew = 100, kLeft = 37;  // of so many hundreds
   for (std::size_t begin = 0; begin < points.size(); begin += kLeft * kFew) {
     const std::vector<Vec3> few(points.begin() + static_cast<std::ptrdiff_t>(begin),
                                 points.begin() + static_cast<std::ptrdiff_t>(std::min(begin + kFew, points.size())));
-    const std::vector<double> expected = at_points(distance, few);
+    const std::vector<double> expected = test::values_of(distance, few);
     std::vector<std::uint32_t> triangles(few.size());
     distance.find_nearest(few, triangles);
     for (std::size_t n = 0; n < few.size(); ++n) {
@@ -172,7 +167,7 @@ TEST(Distance, OfSamplesNextToNeedlesIsThatOfPoints) {
         test::add_triangle(mesh, {0.3, 0.1, 0.1}, {0.5, 0.2, 0.3}, {0.4, 0.5, 0.2});
       }
       const DistanceEvaluator distance(mesh);
-      const std::vector<double> expected = at_points(distance, points);
+      const std::vector<double> expected = test::values_of(distance, points);
       for (const double band : {0.05, 10.0}) {
         const std::vector<double> distances = band_of(distance, lattice, whole(lattice), band);
         std::size_t within = 0;
@@ -208,7 +203,7 @@ TEST(Distance, OfSamplesAndPointsAgreeBitByBit) {
     const Lattice lattice = unit_lattice(40);
     const double band = 2.5 * lattice.spacing.x;
     const std::vector<double> samples = band_of(distance, lattice, whole(lattice), band);
-    const std::vector<double> points = at_points(distance, samples_of(lattice));
+    const std::vector<double> points = test::values_of(distance, samples_of(lattice));
     std::size_t in_band = 0;
     for (std::size_t n = 0; n < samples.size(); ++n) {
       ASSERT_EQ(samples[n], std::min(points[n], band)) << n;
@@ -249,7 +244,7 @@ TriangleMesh fine_cube(double lower, double upper, int cells) {
 // The samples of the lattice are the points' to the bit, whatever the band. Returns how many lie on the surface.
 int expect_points_bit_by_bit(const TriangleMesh& mesh, const Lattice& lattice) {
   const DistanceEvaluator distance(mesh);
-  const std::vector<double> points = at_points(distance, samples_of(lattice));
+  const std::vector<double> points = test::values_of(distance, samples_of(lattice));
   for (const double voxels : {1e-30, 0.5, 1.0, 3.0, 1e30}) {
     const double band = voxels * lattice.spacing.x;
     const std::vector<double> samples = band_of(distance, lattice, whole(lattice), band);
@@ -346,7 +341,8 @@ TEST(Distance, OfSamplesNextToACornerOfManyTriangles) {
 TEST(Distance, ToTheOriginAlone) {
   const TriangleMesh origin{{{0, 0, 0}}, {{0, 0, 0}}};
   for (const double size : {1e-300, 1e-200, 1.0, 1e300}) {
-    EXPECT_DOUBLE_EQ(at_points(DistanceEvaluator(origin), {{3 * size, 4 * size, 0}})[0], 5 * size);
+    EXPECT_DOUBLE_EQ(test::values_of(DistanceEvaluator(origin), std::vector<Vec3>{{3 * size, 4 * size, 0}})[0],
+                     5 * size);
     expect_points_bit_by_bit(origin, {{0, 0, 0}, {size, size, size}, {-1, -1, -1}, {3, 3, 3}});
   }
 }
@@ -375,7 +371,7 @@ TEST(Distance, DoesNotDependOnTheBlock) {
     layer.first[a] = 7;
     layer.counts[a] = 1;
     const std::vector<double> alone = band_of(distance, lattice, layer, band);
-    const std::vector<double> all = at_points(distance, samples_of(lattice, layer));
+    const std::vector<double> all = test::values_of(distance, samples_of(lattice, layer));
     for (std::size_t n = 0; n < alone.size(); ++n) ASSERT_EQ(alone[n], std::min(all[n], band));
   }
 }
@@ -430,14 +426,14 @@ TEST(Distance, ScalesWithTheMesh) {
   std::uniform_real_distribution<double> number(-1, 2);
   std::vector<Vec3> points;
   for (int n = 0; n < 100; ++n) points.push_back({number(random), number(random), number(random)});
-  const std::vector<double> expected = at_points(DistanceEvaluator(mesh), points);
+  const std::vector<double> expected = test::values_of(DistanceEvaluator(mesh), points);
   for (const int exponent : {-900, -3, 3, 1000}) {
     TriangleMesh scaled_mesh = mesh;
     std::vector<Vec3> scaled_points = points;
     for (auto* const vertices : {&scaled_mesh.vertices, &scaled_points}) {
       for (Vec3& p : *vertices) p = {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent)};
     }
-    const std::vector<double> actual = at_points(DistanceEvaluator(scaled_mesh), scaled_points);
+    const std::vector<double> actual = test::values_of(DistanceEvaluator(scaled_mesh), scaled_points);
     for (std::size_t n = 0; n < points.size(); ++n) EXPECT_EQ(actual[n], std::ldexp(expected[n], exponent));
   }
 }
@@ -446,14 +442,14 @@ TEST(Distance, HoldsFarAway) {
   const DistanceEvaluator distance(test::box_mesh({0, 0, 0}, {1, 1, 1}));
   const double largest = std::numeric_limits<double>::max();
   const std::vector<Vec3> points{{1e6, 0, 0}, {3e20, 4e20, 0}, {0, 0, -1e300}, {largest, largest, largest}};
-  const std::vector<double> distances = at_points(distance, points);
+  const std::vector<double> distances = test::values_of(distance, points);
   EXPECT_EQ(distances[0], 1e6 - 1);
   EXPECT_DOUBLE_EQ(distances[1], 5e20);
   EXPECT_DOUBLE_EQ(distances[2], 1e300);
   EXPECT_EQ(distances[3], largest) << "as large as doubles get";
   const DistanceEvaluator from_speck(test::box_mesh({0, 0, 0}, {1e-300, 1e-300, 1e-300}));
-  EXPECT_DOUBLE_EQ(at_points(from_speck, {{3e-200, 4e-200, 0}})[0], 5e-200);
-  EXPECT_DOUBLE_EQ(at_points(from_speck, {{0, 3e200, 4e200}})[0], 5e200);
+  EXPECT_DOUBLE_EQ(test::values_of(from_speck, std::vector<Vec3>{{3e-200, 4e-200, 0}})[0], 5e-200);
+  EXPECT_DOUBLE_EQ(test::values_of(from_speck, std::vector<Vec3>{{0, 3e200, 4e200}})[0], 5e200);
 }
 
 }  // namespace

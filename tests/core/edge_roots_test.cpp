@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -147,8 +148,7 @@ TEST(RuleAlong, HoldsAsItDoesWhateverTheTolerance) {
       }
       points.insert(points.end(), {low, high});
     }
-    std::vector<double> w(points.size());
-    exact.evaluate(points, w);
+    const std::vector<double> w = test::values_of(exact, points);
     const std::vector<std::uint8_t> found = RuleAlong(rough, rule).holds_at(points);
     for (std::size_t n = 0; n < points.size(); ++n) EXPECT_EQ(found[n] != 0, holds(rule, w[n])) << w[n];
   }

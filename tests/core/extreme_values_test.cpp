@@ -15,6 +15,7 @@
 #include "core/mesh/weld.h"
 #include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -64,8 +65,8 @@ std::vector<Vec3> queries_about(const TriangleMesh& mesh, Random& random, int co
 
 double largest_error(const TriangleMesh& mesh, const std::vector<Vec3>& queries, RayEngine engine,
                      Summation summation) {
-  std::vector<double> values(queries.size());
-  WindingNumberEvaluator(mesh, {.ray_engine = engine, .summation = summation}).evaluate(queries, values);
+  const std::vector<double> values =
+      test::values_of(WindingNumberEvaluator(mesh, {.ray_engine = engine, .summation = summation}), queries);
   Quad largest = 0;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const QuadWithin exact = perturbed_direct_sum(mesh, queries[i]);
@@ -98,8 +99,8 @@ TEST(ExtremeValues, FarFieldsKeepTheirTolerance) {
     std::vector<Vec3> queries = queries_about(mesh, random, 60);
     for (const double far : {1e100, 1e160, 1e200, 1e308}) queries.push_back({far, 0.5, 0.5});
     for (const Summation summation : {Summation::kFarField, Summation::kBlocks}) {
-      std::vector<double> values(queries.size());
-      WindingNumberEvaluator(mesh, {.summation = summation, .accuracy = {kTolerance, 1e6}}).evaluate(queries, values);
+      const std::vector<double> values = test::values_of(
+          WindingNumberEvaluator(mesh, {.summation = summation, .accuracy = {kTolerance, 1e6}}), queries);
       for (std::size_t i = 0; i < queries.size(); ++i) {
         const auto exact = static_cast<double>(perturbed_direct_sum(mesh, queries[i]).value);
         EXPECT_NEAR(values[i], exact, kTolerance) << queries[i].x << ' ' << queries[i].y << ' ' << queries[i].z;
@@ -146,8 +147,7 @@ TEST(ExtremeValues, OfManyCopiesAreAsRightAsExpected) {
                         beside * test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}}));
     }
     const WindingNumberEvaluator evaluator(many, {.accuracy = {.tolerance = 0.0}});
-    std::vector<double> values(queries.size());
-    evaluator.evaluate(queries, values);
+    const std::vector<double> values = test::values_of(evaluator, queries);
     for (std::size_t i = 0; i < queries.size(); ++i) {
       Quad exact = 0;
       const std::size_t counts[] = {copies, copies / 2, 1};
@@ -176,8 +176,7 @@ TEST(ExtremeValues, OfNeedlesWhoseRoundingsAgreeAreOffByMoreThanExpected) {
     queries.push_back(along * a + (1 - along) * b + beside * test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}}));
   }
   const WindingNumberEvaluator evaluator(needles, {.accuracy = {.tolerance = 0.0}});
-  std::vector<double> values(queries.size());
-  evaluator.evaluate(queries, values);
+  const std::vector<double> values = test::values_of(evaluator, queries);
   double largest = 0.0;
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const auto error = static_cast<double>(values[i] - perturbed_direct_sum(needles, queries[i]).value);
@@ -233,14 +232,9 @@ TEST(ExtremeValues, OfLatticesAreThoseOfPointsWhereDifferencesOverflow) {
     }
     Lattice lattice{{-1, 0, 0}, steps(0.95 * kLargest), {0, -kHalf, -kHalf}, {1, 2 * kHalf + 1, 2 * kHalf + 1}};
     lattice.spacing[1 + i % 2] *= 0.07;  // sections are for boxes of many rows
-    std::vector<Vec3> points;
-    for (std::int64_t n = 0; n < whole(lattice).size(); ++n) {
-      points.push_back(lattice.position(whole(lattice).index_of(static_cast<std::size_t>(n))));
-    }
-    std::vector<double> at_points(points.size()), on_lattice(points.size());
     const WindingNumberEvaluator evaluator(mesh);
-    evaluator.evaluate(points, at_points);
-    evaluator.evaluate(lattice, whole(lattice), on_lattice);
+    const std::vector<double> at_points = test::values_of(evaluator, test::samples_of(lattice)),
+                              on_lattice = test::values_of(evaluator, lattice);
     EXPECT_EQ(bits(on_lattice), bits(at_points)) << i;
     inside += std::ranges::count_if(at_points, [](double w) { return w < -0.25; }) > 0 ? 1 : 0;
   }
@@ -266,8 +260,7 @@ TEST(ExtremeValues, DoNotDependOnSlabsThatHoldMinuteCoordinates) {
               << size << " axis " << axis << ' ' << cut;
         }
         const std::vector<Vec3> points = test::samples_of(lattice);
-        std::vector<double> at_points(points.size());
-        evaluator.evaluate(points, at_points);
+        const std::vector<double> at_points = test::values_of(evaluator, points);
         EXPECT_EQ(bits(at_points), bits(expected)) << size << " axis " << axis;
       }
     }

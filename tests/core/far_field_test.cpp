@@ -13,6 +13,7 @@
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -46,18 +47,12 @@ std::vector<Vec3> some_points(std::size_t count) {
   return points;
 }
 
-std::vector<double> values_of(const WindingNumberEvaluator& evaluator, std::span<const Vec3> points) {
-  std::vector<double> values(points.size());
-  evaluator.evaluate(points, values);
-  return values;
-}
-
 TEST(FarField, KeepsTheTolerance) {
   const std::vector<Vec3> points = some_points(100);
   for (const TriangleMesh& mesh : open_meshes()) {
     for (const double tolerance : kTolerances) {
       const WindingNumberEvaluator evaluator = evaluator_of(mesh, tolerance);
-      const std::vector<double> values = values_of(evaluator, points);
+      const std::vector<double> values = test::values_of(evaluator, points);
       EXPECT_GT(evaluator.terms().far, points.size());  // or this would be about nothing
       double largest = 0;
       for (std::size_t i = 0; i < points.size(); ++i) {
@@ -78,12 +73,11 @@ TEST(FarField, GivesAQueryTheSameBitsAnywhere) {
   lattice.counts = {11, 10, 13};
   const std::vector<Vec3> points = test::samples_of(lattice);
   for (const TriangleMesh& mesh : open_meshes()) {
-    const std::vector<double> expected = values_of(evaluator_of(mesh, 1e-7), points);
+    const std::vector<double> expected = test::values_of(evaluator_of(mesh, 1e-7), points);
     for (const SimdLevel level : {SimdLevel::kBest, SimdLevel::kSse4, SimdLevel::kAvx2}) {
       if (!is_available(level) && level != SimdLevel::kBest) continue;
       const WindingNumberEvaluator evaluator = evaluator_of(mesh, 1e-7, level);
-      std::vector<double> values(points.size());
-      evaluator.evaluate(lattice, whole(lattice), values);
+      const std::vector<double> values = test::values_of(evaluator, lattice);
       EXPECT_EQ(values, expected);
       const LatticeBlock slab{{-3, -5, 2}, {7, 10, 1}};
       std::vector<double> part(static_cast<std::size_t>(slab.size()));
@@ -117,11 +111,11 @@ TEST(FarField, DoesNotMoveValuesAcrossHalfIntegers) {
       Vec3 in{0, 0, 0}, out = test::uniform_point(random, {{-3, -3, 2}, {3, 3, 3}});
       for (int step = 0; step < 40; ++step) {
         const Vec3 middle = 0.5 * (in + out);
-        (values_of(direct, {&middle, 1})[0] >= 0.5 ? in : out) = middle;
+        (test::values_of(direct, {&middle, 1})[0] >= 0.5 ? in : out) = middle;
         points.push_back(middle);
       }
     }
-    const std::vector<double> expected = values_of(direct, points), values = values_of(rough, points);
+    const std::vector<double> expected = test::values_of(direct, points), values = test::values_of(rough, points);
     EXPECT_GT(test::largest_difference(expected, values), 1e-9);
     for (std::size_t i = 0; i < points.size(); ++i) EXPECT_EQ(values[i] >= 0.5, expected[i] >= 0.5);
   }
@@ -142,21 +136,21 @@ TEST(FarField, HalfIntegersOfAWholeRegionStay) {
   }();
   std::vector<Vec3> points;
   for (int i = -20; i < 20; ++i) points.push_back({0.04 * i, 0.01 * i, rim});
-  EXPECT_EQ(values_of(evaluator_of(mesh, 1e-4), points), values_of(evaluator_of(mesh, 0), points));
+  EXPECT_EQ(test::values_of(evaluator_of(mesh, 1e-4), points), test::values_of(evaluator_of(mesh, 0), points));
 }
 
 TEST(FarField, ATinyToleranceIsNone) {
   const std::vector<Vec3> points = some_points(50);
   const TriangleMesh mesh = open_meshes()[0];
   const WindingNumberEvaluator tiny = evaluator_of(mesh, 9e-13);
-  EXPECT_EQ(values_of(tiny, points), values_of(evaluator_of(mesh, 0), points));
+  EXPECT_EQ(test::values_of(tiny, points), test::values_of(evaluator_of(mesh, 0), points));
   EXPECT_EQ(tiny.terms().far, 0U);
 }
 
 TEST(FarField, IsTakenWhereItPays) {
   const auto takes = [](const TriangleMesh& mesh, double tolerance, double samples) {
     const WindingNumberEvaluator evaluator(mesh, {.accuracy = {tolerance, samples}});
-    (void)values_of(evaluator, some_points(10));
+    (void)test::values_of(evaluator, some_points(10));
     return evaluator.terms().far > 0;
   };
   TriangleMesh many = test::sphere(60);  // a hole in each of many places

@@ -11,6 +11,7 @@
 #include "core/distance/distance.h"
 #include "core/machine/floating_point.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -39,8 +40,7 @@ class Gap {
                                               bool anywhere = false) const {
     const DefaultFloatingPoint guard;
     const GapLimits limits{1e-9, 1.0, new_corners, CoordinatePrecision::kDouble, [&](std::span<const Vec3> points) {
-                             std::vector<double> distances(points.size());
-                             distances_.evaluate(points, distances);
+                             const std::vector<double> distances = test::values_of(distances_, points);
                              return anywhere || std::ranges::all_of(distances, [](double d) { return d <= 1e-9; });
                            }};
     return corner ? fill_gap_from(*corner, loop_, mesh_, limits) : fill_gap(loop_, mesh_, limits);

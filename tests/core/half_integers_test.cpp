@@ -13,6 +13,7 @@
 #include "core/mesh/weld.h"
 #include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -74,10 +75,8 @@ bool in_rim(const TriangleMesh& cup, double x, double y) {
 std::vector<double> evaluate(const TriangleMesh& mesh, const std::vector<Vec3>& queries,
                              RayEngine engine = RayEngine::kScan, Summation summation = Summation::kCheapest,
                              SimdLevel level = SimdLevel::kBest) {
-  std::vector<double> values(queries.size());
-  WindingNumberEvaluator(mesh, {.ray_engine = engine, .level = level, .summation = summation})
-      .evaluate(queries, values);
-  return values;
+  return test::values_of(WindingNumberEvaluator(mesh, {.ray_engine = engine, .level = level, .summation = summation}),
+                         queries);
 }
 
 TEST(HalfIntegers, AreExactInThePlaneOfAnOpeningWhateverItsAxis) {
@@ -118,8 +117,7 @@ TEST(HalfIntegers, AreExactOnLatticesAsAtPoints) {
   for (const Symmetry& symmetry : symmetries()) {
     const TriangleMesh mesh = transformed(upright, symmetry);
     const Lattice lattice{{0, 0, 0}, {0.125, 0.125, 0.125}, {-4, -4, -4}, {9, 9, 9}};
-    std::vector<double> values(729);
-    WindingNumberEvaluator(mesh).evaluate(lattice, whole(lattice), values);
+    const std::vector<double> values = test::values_of(WindingNumberEvaluator(mesh), lattice);
     EXPECT_EQ(evaluate(mesh, test::samples_of(lattice)), values);
     for (int i = -4; i <= 4; ++i) {
       for (int j = -4; j <= 4; ++j) {
@@ -255,8 +253,7 @@ TEST(HalfIntegers, AreLookedForWithinABoundThatHolds) {
         queries.push_back(along * mesh.vertices[t[0]] + (1 - along) * mesh.vertices[t[1]] +
                           beside * test::uniform_point(random, {{-1, -1, -1}, {1, 1, 1}}));
       }
-      std::vector<double> values(queries.size());
-      evaluator.evaluate(queries, values);
+      const std::vector<double> values = test::values_of(evaluator, queries);
       for (std::size_t n = 0; n < queries.size(); ++n) {
         EXPECT_LE(std::abs(values[n] - static_cast<double>(perturbed_direct_sum(mesh, queries[n]).value)),
                   evaluator.doubt());
@@ -311,8 +308,7 @@ TEST(HalfIntegers, OtherNumbersAreSettledWhereValuesAreFarOff) {
   std::vector<Vec3> queries(500);
   std::uniform_real_distribution<double> coordinate(-1.5, 1.5);
   for (Vec3& q : queries) q = {coordinate(random), coordinate(random), coordinate(random)};
-  std::vector<double> truth(queries.size());
-  evaluator.evaluate(queries, truth);
+  const std::vector<double> truth = test::values_of(evaluator, queries);
   for (const double error : {-0.1, -1e-4, 1e-4, 0.1}) {
     for (const double critical : {-0.02, 0.01, 0.3, 0.95}) {
       std::vector<double> values;

@@ -22,6 +22,7 @@
 #include "tests/support/diagnosed.h"
 #include "tests/support/differences.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -269,17 +270,13 @@ TEST(LatticeBlocksTest, WindingNumbersAreWithinTheToleranceFarFromTheOrigin) {
     }
     Lattice lattice = cube_lattice(64);
     lattice.origin = lattice.origin + Vec3{offset, offset, offset};
-    std::vector<double> direct(64 * 64 * 4), values(direct.size());
     const LatticeBlock layers{{0, 0, 30}, {64, 64, 4}};
-    evaluator(mesh, 0.0).evaluate(lattice, layers, direct);
+    const std::vector<double> direct = test::values_of(evaluator(mesh, 0.0), lattice, layers);
     for (const double tolerance : {1e-4, 1e-10, 1e-11}) {
       const WindingNumberEvaluator coarse = evaluator(mesh, tolerance);
-      coarse.evaluate(lattice, layers, values);
-      double largest = 0.0;
-      largest = test::larger_difference(largest, test::largest_difference(values, direct));
-      EXPECT_LT(largest, tolerance) << offset;
+      EXPECT_LT(test::largest_difference(test::values_of(coarse, lattice, layers), direct), tolerance) << offset;
       if (tolerance == 1e-4) {
-        EXPECT_GE(coarse.terms().far, values.size()) << "no polynomials: nothing was tested";
+        EXPECT_GE(coarse.terms().far, direct.size()) << "no polynomials: nothing was tested";
       }
     }
   }
@@ -309,10 +306,8 @@ TEST(LatticeBlocksTest, MovedNodesOfFitsKeepTheTolerance) {
     constexpr double kSpacing = 1.0 / 32;
     const Lattice lattice{{c.offset - 1, c.offset - 1, c.offset - 1}, {kSpacing, kSpacing, kSpacing}, {}, {64, 64, 64}};
     const LatticeBlock layers{{0, 0, 30}, {64, 64, 2}};
-    std::vector<double> direct(64 * 64 * 2), values(direct.size());
-    evaluator(mesh, 0.0).evaluate(lattice, layers, direct);
-    evaluator(mesh, c.tolerance).evaluate(lattice, layers, values);
-    const double largest = test::largest_difference(values, direct);
+    const double largest = test::largest_difference(test::values_of(evaluator(mesh, c.tolerance), lattice, layers),
+                                                    test::values_of(evaluator(mesh, 0.0), lattice, layers));
     EXPECT_LE(largest, c.tolerance) << c.offset;
   }
 }
@@ -337,12 +332,10 @@ TEST(LatticeBlocksTest, MovedNodesOfFitsKeepTheToleranceAtPoints) {
   for (Vec3& p : points) {
     p = Vec3{kOffset, kOffset, kOffset} + test::uniform_point(random, {{8, -7, -7}, {20, 7, 7}});
   }
-  std::vector<double> direct(points.size()), values(points.size());
-  evaluator(mesh, 0.0).evaluate(points, direct);
   const WindingNumberEvaluator coarse(
       mesh, {.summation = Summation::kBlocks, .accuracy = {.tolerance = kTolerance, .points = 250'000}});
-  coarse.evaluate(points, values);
-  const double largest = test::largest_difference(values, direct);
+  const double largest =
+      test::largest_difference(test::values_of(coarse, points), test::values_of(evaluator(mesh, 0.0), points));
   EXPECT_LE(largest, kTolerance);
 }
 
@@ -368,14 +361,11 @@ TEST(LatticeBlocksTest, HalfIntegersStayHalfIntegers) {
   Lattice lattice = cube_lattice(96);
   lattice.origin.z = -48 * lattice.spacing.z;  // a layer at z = 0
   LatticeBlock layer{{0, 0, 8}, {96, 96, 1}};
-  std::vector<double> direct(96 * 96), values(96 * 96);
   const WindingNumberEvaluator exact = evaluator(mesh, 0.0), coarse = evaluator(mesh, 1e-3);
-  exact.evaluate(lattice, layer, direct);
-  coarse.evaluate(lattice, layer, values);
-  EXPECT_NE(values, direct);  // blocks are used
+  EXPECT_NE(test::values_of(coarse, lattice, layer), test::values_of(exact, lattice, layer));  // blocks are used
   layer.first[2] = 48;
-  exact.evaluate(lattice, layer, direct);
-  coarse.evaluate(lattice, layer, values);
+  const std::vector<double> direct = test::values_of(exact, lattice, layer),
+                            values = test::values_of(coarse, lattice, layer);
   EXPECT_GT(std::ranges::count_if(direct, [](double w) { return std::abs(w) == 0.5; }), 100);
   for (std::size_t n = 0; n < values.size(); ++n) {
     EXPECT_EQ(values[n] == 0.5, direct[n] == 0.5);
@@ -387,15 +377,14 @@ TEST(LatticeBlocksTest, HalfIntegersStayHalfIntegers) {
 TEST(LatticeBlocksTest, AreasWhoseSquaresUnderflowAreNotNothing) {
   const TriangleMesh alone = small_sieve();
   const Lattice lattice = cube_lattice(24);
-  std::vector<double> expected(24 * 24 * 24), values(expected.size());
-  evaluator(alone, 0.0).evaluate(lattice, whole(lattice), expected);
+  const std::vector<double> expected = test::values_of(evaluator(alone, 0.0), lattice);
   for (const int exponent : {-250, -290, -350}) {
     const double unit = std::ldexp(1.0, exponent);
     const TriangleMesh mesh =
         test::joined(test::moved(alone, {unit, unit, unit}, {}), test::box_mesh({0.5, 0.5, 0.5}, {1, 1, 1}));
     const Lattice tiny{unit * lattice.origin, unit * lattice.spacing, lattice.index_min, lattice.counts};
     const WindingNumberEvaluator by_blocks = evaluator(mesh, 1e-9);
-    by_blocks.evaluate(tiny, whole(tiny), values);
+    const std::vector<double> values = test::values_of(by_blocks, tiny);
     const double largest = test::largest_difference(values, expected);
     EXPECT_LT(largest, 1e-9) << exponent;
     Rule rule;
@@ -420,8 +409,8 @@ TEST(LatticeBlocksTest, WhatIsTooFarAwayToBeSeenIsNothing) {
     for (const double away : {1e280, 1e296, 1e299, 1e306}) {
       const Lattice far{away * near.origin, away * near.spacing, near.index_min, near.counts};
       for (const Summation summation : {Summation::kBlocks, Summation::kFarField}) {
-        std::vector<double> values(24 * 24 * 24);
-        WindingNumberEvaluator(mesh, {.summation = summation, .accuracy = {1e-9}}).evaluate(far, whole(far), values);
+        const std::vector<double> values =
+            test::values_of(WindingNumberEvaluator(mesh, {.summation = summation, .accuracy = {1e-9}}), far);
         for (const double value : values) ASSERT_LE(std::abs(value), 1e-9) << away << " or NaN";
       }
     }

@@ -16,6 +16,7 @@
 #include "tests/support/direct_winding_number.h"
 #include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -281,8 +282,7 @@ TEST(EdgesAlongX, ContributeNothingAndAreCounted) {
   std::vector<Vec3> points;
   for (int n = 0; n < 200; ++n) points.push_back(test::uniform_point(random, {{-0.5, -0.5, -0.5}, {1.5, 1.5, 1.0}}));
   for (int n = 0; n < 20; ++n) points.push_back({-0.3 + 0.1 * n, 0.0, 0.3});  // above an edge along x
-  std::vector<double> values(points.size());
-  evaluator.evaluate(points, values);
+  const std::vector<double> values = test::values_of(evaluator, points);
   for (std::size_t n = 0; n < points.size(); ++n) {
     // Twenty edges, some u each; the oracle is good to 1e-14.
     EXPECT_NEAR(values[n], test::direct_winding_number(mesh, points[n]), 2e-14) << n;

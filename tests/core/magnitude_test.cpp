@@ -18,6 +18,7 @@
 #include "tests/support/diagnosed.h"
 #include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -31,6 +32,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 void expect_right(const TriangleMesh& mesh, const std::vector<Vec3>& queries) {
   const auto failure = test::check(mesh, queries);
   EXPECT_FALSE(failure) << test::describe(mesh, *failure);
+}
+
+WindingNumberEvaluator by_embree(const TriangleMesh& mesh) {
+  return WindingNumberEvaluator(mesh, {.ray_engine = RayEngine::kEmbree});
 }
 
 bool on_surface(const TriangleMesh& mesh, const Vec3& q) {
@@ -204,8 +209,7 @@ TEST(Magnitude, OfQueriesFarAway) {
       }
     }
     expect_right(mesh, queries);
-    std::vector<double> values(queries.size());
-    WindingNumberEvaluator(mesh).evaluate(queries, values);
+    const std::vector<double> values = test::values_of(WindingNumberEvaluator(mesh), queries);
     for (std::size_t i = 0; i < values.size(); ++i) {
       // Some unit cells of the mesh, each seen under at most 1 / 4 pi R^2 turns, R at least 990; and rounding.
       EXPECT_NEAR(values[i], 0, 1e-5) << queries[i].x << " " << queries[i].y << " " << queries[i].z;
@@ -228,11 +232,9 @@ TEST(Magnitude, OfQueriesFarFromMinuteMeshes) {
         }
       }
       queries.push_back({distance, -distance, distance});
-      std::vector<double> values(queries.size());
-      WindingNumberEvaluator(closed).evaluate(queries, values);
-      EXPECT_EQ(values, std::vector<double>(queries.size(), 0.0));
-      WindingNumberEvaluator(open).evaluate(queries, values);
-      for (const double w : values) EXPECT_NEAR(w, 0, 1e-15);  // rounding; NaN fails
+      EXPECT_EQ(test::values_of(WindingNumberEvaluator(closed), queries), std::vector<double>(queries.size(), 0.0));
+      for (const double w : test::values_of(WindingNumberEvaluator(open), queries))
+        EXPECT_NEAR(w, 0, 1e-15);  // rounding; NaN fails
     }
   }
 }
@@ -496,17 +498,13 @@ TEST(Magnitude, AtTheLargestNumberEveryValueIsRight) {
   }
   const TriangleMesh whole = test::box_mesh({-l, -l, -l}, {l, l, l});
   const TriangleMesh part = test::box_mesh({-l / 2, 0, 0}, {l, l / 2, l});
-  std::vector<double> values(queries.size());
-  WindingNumberEvaluator(whole).evaluate(queries, values);
+  const std::vector<double> of_whole = test::values_of(WindingNumberEvaluator(whole), queries),
+                            of_part = test::values_of(WindingNumberEvaluator(part), queries);
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const Vec3& q = queries[i];
-    EXPECT_EQ(values[i], q.x < l && q.y < l && q.z < l ? 1.0 : 0.0) << q.x << " " << q.y << " " << q.z;
-  }
-  WindingNumberEvaluator(part).evaluate(queries, values);
-  for (std::size_t i = 0; i < queries.size(); ++i) {
-    const Vec3& q = queries[i];
+    EXPECT_EQ(of_whole[i], q.x < l && q.y < l && q.z < l ? 1.0 : 0.0) << q.x << " " << q.y << " " << q.z;
     const bool inside = q.x >= -l / 2 && q.x < l && q.y >= 0 && q.y < l / 2 && q.z >= 0 && q.z < l;
-    EXPECT_EQ(values[i], inside ? 1.0 : 0.0) << q.x << " " << q.y << " " << q.z;
+    EXPECT_EQ(of_part[i], inside ? 1.0 : 0.0) << q.x << " " << q.y << " " << q.z;
   }
   TriangleMesh open = whole;
   open.triangles.resize(7);
@@ -571,9 +569,8 @@ TEST(Magnitude, ScansAreRightWhereProductsUnderflow) {
     const Box box = box_of(ends[0], ends[1]);
     const Lattice lattice{box.lower, 0.125 * (box.upper - box.lower), {0, 0, 0}, {9, 9, 9}};
     if (!(lattice.spacing.x > 0.0 && lattice.spacing.y > 0.0 && lattice.spacing.z > 0.0)) continue;
-    std::vector<double> scanned(9 * 9 * 9), expected(scanned.size());
-    WindingNumberEvaluator(mesh).evaluate(lattice, whole(lattice), scanned);
-    WindingNumberEvaluator(mesh, {.ray_engine = RayEngine::kEmbree}).evaluate(lattice, whole(lattice), expected);
+    const std::vector<double> scanned = test::values_of(WindingNumberEvaluator(mesh), lattice);
+    const std::vector<double> expected = test::values_of(by_embree(mesh), lattice);
     ASSERT_EQ(scanned, expected) << n;
     inside += static_cast<std::uint64_t>(std::ranges::count_if(scanned, [](double w) { return w != 0.0; }));
   }
@@ -586,9 +583,8 @@ TEST(Magnitude, PlanesOfTrianglesWhoseNormalsUnderflow) {
   const TriangleMesh mesh{{{0, 0, 0}, {u, 1, 0}, {0, 0.5, t}, {1, 0.5, t / 4}},
                           {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
   const Lattice lattice{{-u, 0.4, t / 4}, {2 * u / 15, 0.2 / 3, 0.35 / 3 * t}, {0, 0, 0}, {16, 4, 4}};
-  std::vector<double> scanned(16 * 4 * 4), expected(scanned.size());
-  WindingNumberEvaluator(mesh).evaluate(lattice, whole(lattice), scanned);
-  WindingNumberEvaluator(mesh, {.ray_engine = RayEngine::kEmbree}).evaluate(lattice, whole(lattice), expected);
+  const std::vector<double> scanned = test::values_of(WindingNumberEvaluator(mesh), lattice);
+  const std::vector<double> expected = test::values_of(by_embree(mesh), lattice);
   EXPECT_EQ(scanned, expected);
 }
 
@@ -600,9 +596,8 @@ TEST(Magnitude, EdgesWhoseSlopesUnderflow) {
   const double z = 0.3 * h, middle = y + 0.65 * dy;
   for (const double step : {0x1p-80, 0x1p-90, 0x1p-100}) {
     const Lattice lattice{{0, middle - 32 * step, z}, {0.125, step, 1}, {0, 0, 0}, {4, 64, 1}};
-    std::vector<double> scanned(4 * 64), expected(scanned.size());
-    WindingNumberEvaluator(mesh).evaluate(lattice, whole(lattice), scanned);
-    WindingNumberEvaluator(mesh, {.ray_engine = RayEngine::kEmbree}).evaluate(lattice, whole(lattice), expected);
+    const std::vector<double> scanned = test::values_of(WindingNumberEvaluator(mesh), lattice);
+    const std::vector<double> expected = test::values_of(by_embree(mesh), lattice);
     EXPECT_EQ(scanned, expected) << step;
   }
 }
@@ -622,9 +617,8 @@ TEST(Magnitude, SidesOfMeshesThatCannotBeScaled) {
   EXPECT_EQ(unit_scale(huge).exponent(), 0);
   const Lattice lattice{{-0.3125, -0.3125, -0.8125}, {0.015625, 0.015625, 0.03125}, {0, 0, 0}, {37, 37, 33}};
   const Lattice huge_lattice{size * lattice.origin, size * lattice.spacing, {0, 0, 0}, lattice.counts};
-  std::vector<double> values(37 * 37 * 33);
+  const std::vector<double> values = test::values_of(WindingNumberEvaluator(weld(cup, {})), lattice);
   std::vector<std::uint8_t> sides(values.size());
-  WindingNumberEvaluator(weld(cup, {})).evaluate(lattice, whole(lattice), values);
   const WindingNumberEvaluator evaluator(weld(huge, {}));
   EXPECT_GT(static_cast<double>(evaluator.exterior_edges() * values.size()), 0x1p20);  // else certificates do not pay
   evaluator.evaluate_sides({RuleKind::kThreshold, 0.3}, huge_lattice, whole(huge_lattice), sides);

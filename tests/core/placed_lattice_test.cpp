@@ -10,6 +10,7 @@
 
 #include "core/evaluation/winding_number.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone::test {
 namespace {
@@ -68,8 +69,7 @@ TEST(PlacedLattice, TheOrderOfTheAxesChangesNoValue) {
       std::vector<double> values(static_cast<std::size_t>(world.size()));
       evaluator.evaluate(order->lattice, world, values);
       const std::vector<Vec3> positions = positions_of(lattice, block);
-      std::vector<double> expected(positions.size());
-      evaluator.evaluate(positions, expected);
+      const std::vector<double> expected = values_of(evaluator, positions);
       const WorldOrder::Walk walk = order->walk(block);
       for (std::size_t n = 0; n < expected.size(); ++n) {
         const auto number = static_cast<std::int64_t>(n);

@@ -15,6 +15,7 @@
 #include "core/mesh/weld.h"
 #include "tests/support/differences.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -48,19 +49,13 @@ std::vector<Vec3> some_points(const TriangleMesh& mesh, std::size_t count) {
   return points;
 }
 
-std::vector<double> values_of(const WindingNumberEvaluator& evaluator, std::span<const Vec3> points) {
-  std::vector<double> values(points.size());
-  evaluator.evaluate(points, values);
-  return values;
-}
-
 TEST(PointBlocksTest, ValuesAreWithinTheToleranceOfTheDirectSum) {
   for (const TriangleMesh& mesh : {test::sieve(30, 5), loose_triangles()}) {
     const std::vector<Vec3> points = some_points(mesh, 6000);
-    const std::vector<double> direct = values_of(evaluator_of(mesh, 0.0), points);
+    const std::vector<double> direct = test::values_of(evaluator_of(mesh, 0.0), points);
     for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
       const WindingNumberEvaluator blocks = evaluator_of(mesh, tolerance);
-      const std::vector<double> values = values_of(blocks, points);
+      const std::vector<double> values = test::values_of(blocks, points);
       EXPECT_GE(blocks.terms().far, points.size() / 2);  // the polynomial of each that is not outside
       double largest = 0.0;
       for (std::size_t n = 0; n < values.size(); ++n) {
@@ -76,9 +71,9 @@ TEST(PointBlocksTest, ValuesAreWithinTheToleranceOfTheDirectSum) {
 TEST(PointBlocksTest, AQueryHasTheSameBitsAnywhere) {
   const TriangleMesh mesh = test::sieve(30, 5);
   const std::vector<Vec3> points = some_points(mesh, 3000);
-  const std::vector<double> values = values_of(evaluator_of(mesh, 1e-8), points);
+  const std::vector<double> values = test::values_of(evaluator_of(mesh, 1e-8), points);
   for (const SimdLevel level : {SimdLevel::kSse4, SimdLevel::kAvx2}) {
-    EXPECT_EQ(values_of(evaluator_of(mesh, 1e-8, level), points), values);
+    EXPECT_EQ(test::values_of(evaluator_of(mesh, 1e-8, level), points), values);
   }
   const WindingNumberEvaluator evaluator = evaluator_of(mesh, 1e-8);
   std::vector<Vec3> some;
@@ -88,8 +83,8 @@ TEST(PointBlocksTest, AQueryHasTheSameBitsAnywhere) {
     some.push_back(points[n]);
     expected.push_back(values[n]);
   }
-  EXPECT_EQ(values_of(evaluator, some), expected);
-  for (std::size_t n = 0; n < 5; ++n) EXPECT_EQ(values_of(evaluator, {&points[n], 1}), std::vector{values[n]});
+  EXPECT_EQ(test::values_of(evaluator, some), expected);
+  for (std::size_t n = 0; n < 5; ++n) EXPECT_EQ(test::values_of(evaluator, {&points[n], 1}), std::vector{values[n]});
 }
 
 TEST(PointBlocksTest, HalfIntegersStayHalfIntegers) {
@@ -98,11 +93,11 @@ TEST(PointBlocksTest, HalfIntegersStayHalfIntegers) {
   Random random(7);
   std::vector<Vec3> points;
   while (points.size() < 2000) points.push_back(test::uniform_point(random, {{-0.5, -0.5, 0.0}, {0.5, 0.5, 0.0}}));
-  const std::vector<double> direct = values_of(evaluator_of(mesh, 0.0), points);
+  const std::vector<double> direct = test::values_of(evaluator_of(mesh, 0.0), points);
   EXPECT_GT(std::ranges::count_if(direct, [](double w) { return std::abs(w) == 0.5; }), 100);
   for (const double tolerance : {1e-3, 1e-9}) {
     const WindingNumberEvaluator blocks = evaluator_of(mesh, tolerance);
-    const std::vector<double> values = values_of(blocks, points);
+    const std::vector<double> values = test::values_of(blocks, points);
     EXPECT_GT(blocks.terms().far, points.size());
     for (std::size_t n = 0; n < values.size(); ++n) {
       EXPECT_EQ(values[n] == 0.5, direct[n] == 0.5);

@@ -15,6 +15,7 @@
 #include "core/mesh/exterior_edges.h"
 #include "core/mesh/weld.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 #ifdef RAYCONE_SHARED_MESHES  // tests/mutants builds no readers
 #include "io/mesh/read_mesh.h"
 #endif
@@ -60,10 +61,9 @@ constexpr std::int64_t kWrong = std::numeric_limits<std::int64_t>::min();
 // kWrong where a rule is wrong somewhere.
 std::int64_t certified(const TriangleMesh& mesh, const Lattice& lattice) {
   const WindingNumberEvaluator evaluator(mesh);
-  const auto size = static_cast<std::size_t>(whole(lattice).size());
-  std::vector<double> truth(size);
+  const std::vector<double> truth = test::values_of(evaluator, lattice);
+  const std::size_t size = truth.size();
   std::vector<std::uint8_t> sides(size);
-  evaluator.evaluate(lattice, whole(lattice), truth);
   const std::uint64_t edges = std::max<std::uint64_t>(evaluator.exterior_edges(), 1);
   std::uint64_t terms = 0;
   for (const Rule& rule : kRules) {
@@ -133,9 +133,8 @@ TEST(Sides, AreSettledWhereTheWindingNumberIsTheThreshold) {
         {test::uniform(random, 1, 9), 0, 0}, {0, test::uniform(random, 1, 9), 0}, {0, 0, test::uniform(random, 1, 9)}};
     octant.triangles = {{0, 1, 2}};
     const WindingNumberEvaluator evaluator(octant);
-    std::vector<double> values(27);
-    std::vector<std::uint8_t> sides(27);
-    evaluator.evaluate(lattice, whole(lattice), values);
+    const std::vector<double> values = test::values_of(evaluator, lattice);
+    std::vector<std::uint8_t> sides(values.size());
     evaluator.evaluate_sides(rule, lattice, whole(lattice), sides);
     EXPECT_EQ(sides[13], 1) << values[13];
     below += values[13] < 0.125;

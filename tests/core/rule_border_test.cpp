@@ -14,6 +14,7 @@
 #include "core/mesh/weld.h"
 #include "tests/support/border_sources.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -29,9 +30,7 @@ const std::vector<Rule> kBorderRules{{},
                                      {RuleKind::kOdd}};
 
 std::vector<double> windings(const TriangleMesh& mesh, const std::vector<Vec3>& points) {
-  std::vector<double> values(points.size());
-  WindingNumberEvaluator(mesh).evaluate(points, values);
-  return values;
+  return test::values_of(WindingNumberEvaluator(mesh), points);
 }
 
 // Points in and around the box of the mesh that are so far from it that rounding of corners cannot pass them.

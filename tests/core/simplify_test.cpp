@@ -20,6 +20,7 @@
 #include "core/surface/surface.h"
 #include "core/surface/thicken.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -42,8 +43,7 @@ double farthest(const TriangleMesh& of, const TriangleMesh& to) {
       points.push_back(1.0 / sum * (weights.x * a + weights.y * b + weights.z * c));
     }
   }
-  std::vector<double> distances(points.size());
-  DistanceEvaluator(to).evaluate(points, distances);
+  const std::vector<double> distances = test::values_of(DistanceEvaluator(to), points);
   return *std::ranges::max_element(distances);
 }
 

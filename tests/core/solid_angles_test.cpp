@@ -11,6 +11,7 @@
 #include "tests/support/differences.h"
 #include "tests/support/lattice_samples.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -21,9 +22,7 @@ constexpr Summation kBothSums[] = {Summation::kCone, Summation::kTriangles};
 
 std::vector<double> evaluate(const TriangleMesh& mesh, const Lattice& lattice, Summation summation,
                              SimdLevel level = SimdLevel::kBest) {
-  std::vector<double> values(static_cast<std::size_t>(whole(lattice).size()));
-  WindingNumberEvaluator(mesh, {.level = level, .summation = summation}).evaluate(lattice, whole(lattice), values);
-  return values;
+  return test::values_of(WindingNumberEvaluator(mesh, {.level = level, .summation = summation}), lattice);
 }
 
 // Rows through corners, edges and along faces of meshes with corners on integers.
@@ -68,8 +67,8 @@ TEST(SolidAngles, AreTheSameAtEverySimdLevelAndForPoints) {
     EXPECT_EQ(evaluate(mesh, lattice, Summation::kTriangles, level), expected);
   }
   const std::vector<Vec3> points = test::samples_of(lattice);
-  std::vector<double> values(points.size());
-  WindingNumberEvaluator(mesh, {.summation = Summation::kTriangles}).evaluate(points, values);
+  const std::vector<double> values =
+      test::values_of(WindingNumberEvaluator(mesh, {.summation = Summation::kTriangles}), points);
   EXPECT_EQ(values, expected);
 }
 

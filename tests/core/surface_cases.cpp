@@ -1,4 +1,5 @@
 #include "tests/core/surface_cases.h"
+#include "tests/support/values.h"
 
 #include <gtest/gtest.h>
 
@@ -123,8 +124,7 @@ Made surface_of(const TriangleMesh& mesh, std::int64_t side, const SurfaceOption
 }
 
 double largest_distance_of(const std::vector<Vec3>& points, const TriangleMesh& mesh) {
-  std::vector<double> distances(points.size());
-  DistanceEvaluator(mesh).evaluate(points, distances);
+  const std::vector<double> distances = values_of(DistanceEvaluator(mesh), points);
   return *std::ranges::max_element(distances);
 }
 

@@ -29,6 +29,7 @@
 #include "core/surface/surface_measures.h"
 #include "tests/core/surface_cases.h"
 #include "tests/support/shapes.h"
+#include "tests/support/values.h"
 
 namespace raycone {
 namespace {
@@ -77,8 +78,7 @@ TEST(Surface, IsTheSameInEveryUnitOfLength) {
 
 // How many of the points are within 1e-9 voxels of the mesh, which is about the margin.
 double part_at(const std::vector<Vec3>& points, const TriangleMesh& mesh, double voxel) {
-  std::vector<double> distances(points.size());
-  DistanceEvaluator(mesh).evaluate(points, distances);
+  const std::vector<double> distances = test::values_of(DistanceEvaluator(mesh), points);
   const auto near = std::ranges::count_if(distances, [&](double d) { return d <= 2e-9 * voxel; });
   return static_cast<double>(near) / static_cast<double>(points.size());
 }
@@ -525,8 +525,7 @@ TEST(Surface, ClosesAHoleWhereTheWindingNumberPassesTheThreshold) {
     if (surface.sources[i] == kHole) at_hole.push_back(surface.mesh.vertices[surface.mesh.triangles[i][0]]);
   }
   ASSERT_GT(at_hole.size(), 10U);
-  std::vector<double> w(at_hole.size());
-  WindingNumberEvaluator(mesh).evaluate(at_hole, w);
+  const std::vector<double> w = test::values_of(WindingNumberEvaluator(mesh), at_hole);
   // Points next to the hole's rim are on triangles, the others within 2^-34 of an edge of the right place.
   const auto right = std::ranges::count_if(w, [](double value) { return std::abs(value - 0.5) < 1e-8; });
   EXPECT_GT(static_cast<double>(right), 0.5 * static_cast<double>(w.size()));

@@ -7,6 +7,7 @@
 #include "core/exact/exact_determinant.h"
 #include "core/exact/place_at_plane.h"
 #include "core/exact/predicates.h"
+#include "core/exact/sure_sign.h"
 #include "core/mesh/triangle_runs.h"
 
 namespace raycone {
@@ -16,11 +17,10 @@ using Long = long double;
 
 // The sign of a cross product of two differences times a third one, as far as that is sure; else 0. `terms`: the
 // magnitudes of the products that `turn` has, added.
-int sure_sign(const Vec3& turn, const Vec3& terms, const Vec3& step) {
+int sure_side(const Vec3& turn, const Vec3& terms, const Vec3& step) {
   constexpr double kTrust = 0x1p-48, kUnderflow = 0x1p-900;  // ten roundings are less
   constexpr Vec3 kTiny{0x1p-1000, 0x1p-1000, 0x1p-1000};     // more than what underflows in `turn`, times 2^48
-  const double volume = dot(turn, step), trust = kTrust * dot(terms + kTiny, absolute(step)) + kUnderflow;
-  return static_cast<int>(volume > trust) - static_cast<int>(volume < -trust);
+  return sure_sign(dot(turn, step), kTrust * dot(terms + kTiny, absolute(step)) + kUnderflow);
 }
 
 // Of the line through p and q, which is not parallel to the triangle.
@@ -58,9 +58,11 @@ double distance_terms(const Vec3& normal_terms, const Vec3& p, const Vec3& q, co
   return dot(normal_terms, absolute(p - a) + absolute(q - a));
 }
 
-// segment_hit() of segments whose ends are on these sides of the triangle's plane.
-std::optional<double> hit_between(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c, int side_p,
-                                  int side_q) {
+}  // namespace
+
+std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+  if (!overlap(box_of(p, q), box_of(a, b, c))) return std::nullopt;
+  const int side_p = plane_side(a, b, c, p), side_q = plane_side(a, b, c, q);
   if (side_p == side_q) return std::nullopt;  // both 0, too
   if (side_p * side_q > 0 || !line_meets_triangle(p, q, a, b, c)) return std::nullopt;
   if (side_p == 0) return 0.0;
@@ -68,13 +70,6 @@ std::optional<double> hit_between(const Vec3& p, const Vec3& q, const Vec3& a, c
   const LongVec3 normal = long_normal(a, b, c);
   return place_between(std::abs(dot(normal, long_difference(p, a))), std::abs(dot(normal, long_difference(q, a))),
                        distance_terms(cross_terms(b - a, c - a), p, q, a), p, q, a, b, c);
-}
-
-}  // namespace
-
-std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  if (!overlap(box_of(p, q), box_of(a, b, c))) return std::nullopt;
-  return hit_between(p, q, a, b, c, plane_side(a, b, c, p), plane_side(a, b, c, q));
 }
 
 void HitFinder::enter(const Vec3& end, std::span<const std::uint32_t> triangles) {
@@ -112,7 +107,7 @@ void HitFinder::find_sides(Known& t) const {
 }
 
 int HitFinder::plane_side_of(const Known& t, const Vec3& p) {
-  const int side = sure_sign(t.normal.value, t.normal.terms, p - *t.a);
+  const int side = sure_side(t.normal.value, t.normal.terms, p - *t.a);
   return side != 0 ? side : plane_side(*t.a, *t.b, *t.c, p);
 }
 
@@ -122,7 +117,7 @@ HitFinder::Passage HitFinder::passage(const Known& t, const Vec3& other) const {
   const std::array<const Vec3*, 4> corners{t.a, t.b, t.c, t.a};
   std::array<int, 3> sides;
   for (std::size_t n = 0; n < sides.size(); ++n) {
-    sides[n] = sure_sign(t.sides[n].value, t.sides[n].terms, step);
+    sides[n] = sure_side(t.sides[n].value, t.sides[n].terms, step);
     if (sides[n] == 0) sides[n] = plane_side(end_, other, *corners[n], *corners[n + 1]);
   }
   if (sides[0] * sides[1] < 0 || sides[0] * sides[2] < 0 || sides[1] * sides[2] < 0) return Passage::kBeside;

@@ -10,6 +10,7 @@
 
 #include "core/exact/exact_integers.h"
 #include "core/exact/scale.h"
+#include "core/exact/sure_sign.h"
 
 namespace raycone {
 namespace {
@@ -58,7 +59,7 @@ int sure_turn(double most, double ab_x, double ab_y, double ac_x, double ac_y) {
   const double sides = std::abs(ab_x) + std::abs(ab_y) + std::abs(ac_x) + std::abs(ac_y);
   const double trust = 0x1p-48 * most * (sides + 0x1p-48 * most) + 0x1p-1000;
   if (!std::isfinite(value)) return 0;
-  return static_cast<int>(value > trust) - static_cast<int>(value < -trust);
+  return sure_sign(value, trust);
 }
 
 int sure_turn(int axis, const Vec3& a, const Vec3& b, const Vec3& c) {
@@ -81,7 +82,7 @@ int sure_side(const std::array<Vec3, 3>& triangle, const Vec3& p) {
   const double off = 0x1p-46 * most;
   const double trust = off * (a * b + b * c + c * a + off * (a + b + c + off)) + 0x1p-1000;
   if (!std::isfinite(value)) return 0;  // of three products one may have overflowed, and not the largest
-  return static_cast<int>(value > trust) - static_cast<int>(value < -trust);
+  return sure_sign(value, trust);
 }
 
 // The determinant of the points' coordinates along two axes and their denominators: the turn, times all of the latter.

@@ -17,6 +17,7 @@
 #include <cmath>
 
 #include "core/data/vec3.h"
+#include "core/exact/sure_sign.h"
 
 namespace raycone {
 
@@ -59,8 +60,7 @@ inline constexpr double kSideUnderflow = 0x1p-1000;  // far more than a product 
 
 // The sign of D where that is sure, else 0.
 [[nodiscard]] inline int sure_sign(const EdgeDeterminant& d) {
-  const double trust = kSideFilter * d.terms + kSideUnderflow;
-  return static_cast<int>(d.value > trust) - static_cast<int>(d.value < -trust);
+  return sure_sign(d.value, kSideFilter * d.terms + kSideUnderflow);
 }
 
 [[nodiscard]] inline EdgeSide broken_tie(const Vec3& a, const Vec3& b) {

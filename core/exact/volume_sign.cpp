@@ -4,19 +4,19 @@
 #include <cmath>
 
 #include "core/exact/exact_integers.h"
+#include "core/exact/sure_sign.h"
 
 namespace raycone {
 namespace {
 
 int sign_in_doubles(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices) {
+  constexpr Vec3 kUnderflow{kVolumeUnderflow, kVolumeUnderflow, kVolumeUnderflow};
   const Vec3 origin = vertices[triangles.front()[0]];
   double sum = 0.0, terms = 0.0;
   for (const Triangle& t : triangles) {
     const Vec3 a = vertices[t[0]] - origin, b = vertices[t[1]] - origin, c = vertices[t[2]] - origin;
     sum += dot(a, cross(b, c));
-    terms += std::abs(a.x) * (std::abs(b.y * c.z) + std::abs(b.z * c.y) + kVolumeUnderflow) +
-             std::abs(a.y) * (std::abs(b.z * c.x) + std::abs(b.x * c.z) + kVolumeUnderflow) +
-             std::abs(a.z) * (std::abs(b.x * c.y) + std::abs(b.y * c.x) + kVolumeUnderflow);
+    terms += dot(absolute(a), cross_terms(b, c) + kUnderflow);
   }
   return sure_volume_sign(sum, terms, triangles.size());
 }
@@ -27,7 +27,7 @@ int sign_in_doubles(const std::vector<Triangle>& triangles, const std::vector<Ve
 // trusted.
 int sure_volume_sign(double sum, double terms, std::uint64_t triangles) {
   const double trust = (static_cast<double>(triangles) + 16.0) * 0x1p-52 * terms + 0x1p-900;
-  return static_cast<int>(sum > trust) - static_cast<int>(sum < -trust);  // neither where something overflows
+  return sure_sign(sum, trust);  // 0 where something overflows
 }
 
 int volume_sign(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices) {

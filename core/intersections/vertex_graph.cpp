@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/exact/sure_sign.h"
+
 namespace raycone {
 namespace {
 
@@ -28,8 +30,7 @@ bool turns_left(const Vec3& direction, const Vec3& a, const Vec3& b) {
 int side_of(const Vec3& direction, int axis, const Vec3& v) {
   const int first = (axis + 1) % 3, second = (axis + 2) % 3;
   const double left = direction[second] * v[first], right = direction[first] * v[second];
-  const double doubt = kRoundings * (std::abs(left) + std::abs(right)) + kUnderflow;
-  return static_cast<int>(left - right > doubt) - static_cast<int>(left - right < -doubt);
+  return sure_sign(left - right, kRoundings * (std::abs(left) + std::abs(right)) + kUnderflow);
 }
 
 // The axis that is farthest from a direction: the plane along both is sure to be one.

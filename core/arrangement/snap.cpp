@@ -130,7 +130,7 @@ class Neighbours {
 class NearInside {
  public:
   NearInside(const TriangleMesh& mesh, const Triangle& t, double distance)
-      : corners_{mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]},
+      : corners_(corners_of(mesh, t)),
         area_(cross(corners_[1] - corners_[0], corners_[2] - corners_[0])) {
     const double size = safe_norm(area_);
     off_plane_ = size > 0.0 ? distance * size : -1.0;
@@ -146,7 +146,7 @@ class NearInside {
   }
 
  private:
-  std::array<Vec3, 3> corners_;
+  Corners3 corners_;
   Vec3 area_;
   double off_plane_;                // by how much they may be, times the length of area_; nothing has no area
   std::array<double, 3> off_side_;  // by how much they must be, times that and the side's length

@@ -29,7 +29,7 @@ struct Meeting {
   bool at_edge = false;
 };
 
-Meeting meeting_of(Number from, int axis, const std::array<Vec3, 3>& face, const ExactPoints& points) {
+Meeting meeting_of(Number from, int axis, const Corners3& face, const ExactPoints& points) {
   bool is_left = false, is_right = false, at_edge = false;
   for (std::size_t i = 0; i < 3; ++i) {
     const int turn = points.turn(axis, face[i], face[(i + 1) % 3], from);
@@ -87,8 +87,7 @@ class Rays {
     std::vector<std::atomic<std::int64_t>> sums(probes.size());
     std::vector<std::atomic<bool>> at_edges(probes.size());
     parallel_for_each(mesh_.triangles.size(), kGrain, [&](std::size_t n) {
-      const auto& [a, b, c] = mesh_.triangles[n];
-      const std::array<Vec3, 3> face{mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]};
+      const Corners3 face = corners_of(mesh_, mesh_.triangles[n]);
       constexpr double kAll = -std::numeric_limits<double>::infinity();
       grid.for_each_ray(turned(face[0]), turned(face[1]), turned(face[2]), kAll, [&](std::size_t i) {
         const Meeting meeting = meeting_of(probes[i].point, axis, face, points);

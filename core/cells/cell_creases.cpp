@@ -45,7 +45,6 @@ struct LinePart {
 Box box_of(const std::array<Vec3, 4>& corners) {
   return hull(box_of(corners[0], corners[1]), box_of(corners[2], corners[3]));
 }
-Box box_of(const std::array<Vec3, 3>& corners) { return box_of(corners[0], corners[1], corners[2]); }
 
 // Widened by far more than what touches, or rounds.
 Box with_room(const Box& box) {
@@ -132,25 +131,25 @@ void CellCreases::find(std::uint32_t cell, std::vector<Crease>& found) const {
 }
 
 // A hit is in the crease's box, but for rounding.
-bool CreasesHere::has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance, CreaseKinds kinds) {
+bool CreasesHere::has_hit_near(const Corners3& corners, const Vec3& p, double distance, CreaseKinds kinds) {
   const Vec3 reach{2.0 * distance, 2.0 * distance, 2.0 * distance};
   const Box near{p - reach, p + reach};
   return std::ranges::any_of(all(), [&](const Crease& crease) {
     if ((crease.is_fine && kinds == CreaseKinds::kNotFine) || !overlap(crease.box, near)) return false;
-    const std::optional<double> at = segment_hit(crease.from, crease.to, corners[0], corners[1], corners[2]);
+    const std::optional<double> at = segment_hit(crease.from, crease.to, corners);
     if (!at) return false;
     const Vec3 off = crease.from + *at * (crease.to - crease.from) - p;
     return dot(off, off) <= distance * distance;
   });
 }
 
-std::optional<Vec3> CreasesHere::farthest_hit(const std::array<Vec3, 3>& corners, const Vec3& p, const Vec3& q) {
+std::optional<Vec3> CreasesHere::farthest_hit(const Corners3& corners, const Vec3& p, const Vec3& q) {
   const Box box = box_of(corners);
   std::optional<Vec3> farthest;
   double most = -1.0;
   for (const Crease& crease : all()) {
     if (!crease.is_sharp || !overlap(crease.box, box)) continue;
-    const std::optional<double> at = segment_hit(crease.from, crease.to, corners[0], corners[1], corners[2]);
+    const std::optional<double> at = segment_hit(crease.from, crease.to, corners);
     if (!at) continue;
     const Vec3 hit = crease.from + *at * (crease.to - crease.from), off = cross(q - p, hit - p);
     const double distance = dot(off, off);
@@ -163,12 +162,12 @@ std::optional<Vec3> CreasesHere::farthest_hit(const std::array<Vec3, 3>& corners
 
 // What a flat part that is convex has in common with a plane is a piece of a straight line, with two ends: from the
 // crease where it is entered it leads to one other crease at most.
-CreasesHere::Section CreasesHere::section(const std::array<Vec3, 3>& corners, std::uint32_t from, std::uint32_t to) {
+CreasesHere::Section CreasesHere::section(const Corners3& corners, std::uint32_t from, std::uint32_t to) {
   const Box box = box_of(corners);
   hits_.clear();
   for (const Crease& crease : all()) {
     if (!overlap(crease.box, box)) continue;
-    const std::optional<double> at = segment_hit(crease.from, crease.to, corners[0], corners[1], corners[2]);
+    const std::optional<double> at = segment_hit(crease.from, crease.to, corners);
     if (at) hits_.push_back({crease.from + *at * (crease.to - crease.from), crease.triangles});
   }
   Section section;

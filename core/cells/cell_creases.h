@@ -88,12 +88,12 @@ class CreasesHere {
   [[nodiscard]] const CellCreases& all_creases() const { return creases_; }
 
   // Whether a crease meets a triangle of the cell within a distance of `p`, which is more than what coordinates round.
-  [[nodiscard]] bool has_hit_near(const std::array<Vec3, 3>& corners, const Vec3& p, double distance,
+  [[nodiscard]] bool has_hit_near(const Corners3& corners, const Vec3& p, double distance,
                                   CreaseKinds kinds = CreaseKinds::kNotFine);
 
   // The point of a sharp crease on a triangle of the cell that is farthest from the line through two points of that
   // triangle.
-  [[nodiscard]] std::optional<Vec3> farthest_hit(const std::array<Vec3, 3>& corners, const Vec3& p, const Vec3& q);
+  [[nodiscard]] std::optional<Vec3> farthest_hit(const Corners3& corners, const Vec3& p, const Vec3& q);
 
   // How the mesh leads from one of its triangles to another one within a triangle of the cell, from flat part to flat
   // part: the points of the creases in between, and the triangle beyond each of them.
@@ -107,7 +107,7 @@ class CreasesHere {
     std::size_t size = 0;  // 0 where creases do not lead there, or not just one way, or by more than kMost points
   };
   // Fine creases count.
-  [[nodiscard]] Section section(const std::array<Vec3, 3>& corners, std::uint32_t from, std::uint32_t to);
+  [[nodiscard]] Section section(const Corners3& corners, std::uint32_t from, std::uint32_t to);
 
   // The point of a crease in a tetrahedron of the cell that is nearest to another one; of ends of creases within the
   // tetrahedron, with barycentric coordinates above `margin`. Both are relative to the first corner. Off by rounding.

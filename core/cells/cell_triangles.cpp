@@ -49,7 +49,7 @@ class CellFinder {
 
   template <class Found>
   void find(std::uint32_t triangle, std::int64_t layer, const Found& found) const {
-    const std::array<Vec3, 3> corners = this->corners(triangle);
+    const Corners3 corners = this->corners(triangle);
     if (is_far(corners)) return find_all(corners, layer, found);
     const auto low = static_cast<double>(layer) - kMargin, high = static_cast<double>(layer + 1) + kMargin;
     Polygon part;
@@ -65,22 +65,18 @@ class CellFinder {
   }
 
  private:
-  [[nodiscard]] std::array<Vec3, 3> corners(std::uint32_t triangle) const {
-    const Lattice& lattice = cells_.lattice();
-    std::array<Vec3, 3> corners;
-    for (std::size_t n = 0; n < 3; ++n) {
-      const Vec3& v = mesh_.vertices[mesh_.triangles[triangle][n]];
-      for (int axis = 0; axis < 3; ++axis) corners[n][axis] = lattice.steps_from_first(axis, v[axis]);
-    }
+  [[nodiscard]] Corners3 corners(std::uint32_t triangle) const {
+    Corners3 corners = corners_of(mesh_, mesh_.triangles[triangle]);
+    for (Vec3& corner : corners) corner = cells_.lattice().steps_from_first(corner);
     return corners;
   }
 
-  [[nodiscard]] static bool is_far(const std::array<Vec3, 3>& corners) {
+  [[nodiscard]] static bool is_far(const Corners3& corners) {
     return !std::ranges::all_of(
         corners, [](const Vec3& p) { return std::abs(p.x) < kFar && std::abs(p.y) < kFar && std::abs(p.z) < kFar; });
   }
 
-  [[nodiscard]] static Interval extent(const std::array<Vec3, 3>& corners, int axis) {
+  [[nodiscard]] static Interval extent(const Corners3& corners, int axis) {
     Interval result = kEmptyInterval;
     for (const Vec3& p : corners) extend(result, p[axis]);
     return result;
@@ -119,7 +115,7 @@ class CellFinder {
 
   // All cells of the layer that meet the triangle's box.
   template <class Found>
-  void find_all(const std::array<Vec3, 3>& corners, std::int64_t layer, const Found& found) const {
+  void find_all(const Corners3& corners, std::int64_t layer, const Found& found) const {
     const CellRange rows = range(1, extent(corners, 1));
     for (std::int64_t row = rows.first; row <= rows.last; ++row) find_in_row(extent(corners, 0), row, layer, found);
   }

@@ -8,7 +8,6 @@
 #include "core/exact/place_at_plane.h"
 #include "core/exact/predicates.h"
 #include "core/exact/sure_sign.h"
-#include "core/mesh/triangle_runs.h"
 
 namespace raycone {
 namespace {
@@ -24,7 +23,8 @@ int sure_side(const Vec3& turn, const Vec3& terms, const Vec3& step) {
 }
 
 // Of the line through p and q, which is not parallel to the triangle.
-bool line_meets_triangle(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
+bool line_meets_triangle(const Vec3& p, const Vec3& q, const Corners3& triangle) {
+  const auto& [a, b, c] = triangle;
   const int first = plane_side(p, q, a, b), second = plane_side(p, q, b, c);
   if (first * second < 0) return false;
   const int third = plane_side(p, q, c, a);
@@ -39,14 +39,14 @@ double place_between(Long of_first, Long of_second) {
 
 // The same of p and q and the plane of a triangle. Where both are near to it, their distances are all rounding.
 // `terms`: the magnitudes of the products that the distances, times the normal's length, have, added.
-double place_between(Long of_p, Long of_q, double terms, const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
-                     const Vec3& c) {
+double place_between(Long of_p, Long of_q, double terms, const Vec3& p, const Vec3& q, const Corners3& triangle) {
   constexpr Long kUnderflow = 0x1p-900;  // far more than `terms` and the distances lose
   // Ten roundings of 2^-64, or of 2^-113, are below 2^-50 of the sum then.
   constexpr Long kSure = 0x1p-10;
   constexpr double kWideSure = 0x1p-58;
   const Long all_terms = terms + kUnderflow;
   if (of_p + of_q > kSure * all_terms) return place_between(of_p, of_q);
+  const auto& [a, b, c] = triangle;
   const QuadVec3 normal = cross_of_differences(b, c, a);
   const Quad from_p = absolute(dot(normal, quad_difference(p, a))),
              from_q = absolute(dot(normal, quad_difference(q, a)));
@@ -60,16 +60,17 @@ double distance_terms(const Vec3& normal_terms, const Vec3& p, const Vec3& q, co
 
 }  // namespace
 
-std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c) {
-  if (!overlap(box_of(p, q), box_of(a, b, c))) return std::nullopt;
+std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Corners3& triangle) {
+  if (!overlap(box_of(p, q), box_of(triangle))) return std::nullopt;
+  const auto& [a, b, c] = triangle;
   const int side_p = plane_side(a, b, c, p), side_q = plane_side(a, b, c, q);
   if (side_p == side_q) return std::nullopt;  // both 0, too
-  if (side_p * side_q > 0 || !line_meets_triangle(p, q, a, b, c)) return std::nullopt;
+  if (side_p * side_q > 0 || !line_meets_triangle(p, q, triangle)) return std::nullopt;
   if (side_p == 0) return 0.0;
   if (side_q == 0) return 1.0;
   const LongVec3 normal = long_normal(a, b, c);
   return place_between(std::abs(dot(normal, long_difference(p, a))), std::abs(dot(normal, long_difference(q, a))),
-                       distance_terms(cross_terms(b - a, c - a), p, q, a), p, q, a, b, c);
+                       distance_terms(cross_terms(b - a, c - a), p, q, a), p, q, triangle);
 }
 
 void HitFinder::enter(const Vec3& end, std::span<const std::uint32_t> triangles) {
@@ -80,11 +81,8 @@ void HitFinder::enter(const Vec3& end, std::span<const std::uint32_t> triangles)
     Known& known = triangles_[count_++];
     known.has_sides = known.has_distance = false;
     if (known.triangle == triangle) continue;
-    const Triangle& t = mesh_.triangles[triangle];
-    known.a = &mesh_.vertices[t[0]];
-    known.b = &mesh_.vertices[t[1]];
-    known.c = &mesh_.vertices[t[2]];
-    known.box = box_of_triangle(mesh_, triangle);
+    known.corners = corners_of(mesh_, mesh_.triangles[triangle]);
+    known.box = box_of(known.corners);
     known.triangle = triangle;
     known.has_plane = false;
   }
@@ -93,32 +91,33 @@ void HitFinder::enter(const Vec3& end, std::span<const std::uint32_t> triangles)
 HitFinder::Turn HitFinder::turn_of(const Vec3& u, const Vec3& v) { return {cross(u, v), cross_terms(u, v)}; }
 
 void HitFinder::find_plane(Known& t) {
-  t.normal = turn_of(*t.b - *t.a, *t.c - *t.a);
-  t.long_normal = long_normal(*t.a, *t.b, *t.c);
+  const auto& [a, b, c] = t.corners;
+  t.normal = turn_of(b - a, c - a);
+  t.long_normal = long_normal(a, b, c);
   t.has_plane = true;
 }
 
 void HitFinder::find_sides(Known& t) const {
   if (!t.has_plane) find_plane(t);
-  const Vec3 a = *t.a - end_, b = *t.b - end_, c = *t.c - end_;
+  const Vec3 a = t.corners[0] - end_, b = t.corners[1] - end_, c = t.corners[2] - end_;
   t.sides = {turn_of(a, b), turn_of(b, c), turn_of(c, a)};
   t.side = plane_side_of(t, end_);
   t.has_sides = true;
 }
 
 int HitFinder::plane_side_of(const Known& t, const Vec3& p) {
-  const int side = sure_side(t.normal.value, t.normal.terms, p - *t.a);
-  return side != 0 ? side : plane_side(*t.a, *t.b, *t.c, p);
+  const auto& [a, b, c] = t.corners;
+  const int side = sure_side(t.normal.value, t.normal.terms, p - a);
+  return side != 0 ? side : plane_side(a, b, c, p);
 }
 
 // Of the line through the end and another point, which is not parallel to the triangle.
 HitFinder::Passage HitFinder::passage(const Known& t, const Vec3& other) const {
   const Vec3 step = other - end_;
-  const std::array<const Vec3*, 4> corners{t.a, t.b, t.c, t.a};
   std::array<int, 3> sides;
   for (std::size_t n = 0; n < sides.size(); ++n) {
     sides[n] = sure_side(t.sides[n].value, t.sides[n].terms, step);
-    if (sides[n] == 0) sides[n] = plane_side(end_, other, *corners[n], *corners[n + 1]);
+    if (sides[n] == 0) sides[n] = plane_side(end_, other, t.corners[n], t.corners[(n + 1) % 3]);
   }
   if (sides[0] * sides[1] < 0 || sides[0] * sides[2] < 0 || sides[1] * sides[2] < 0) return Passage::kBeside;
   return sides[0] * sides[1] * sides[2] == 0 ? Passage::kAtSide : Passage::kInside;
@@ -133,13 +132,13 @@ std::optional<SegmentHit> HitFinder::hit(Known& t, const Vec3& other, Way way) c
   if (t.side == 0) return SegmentHit{way == Way::kFromEnd ? 0.0 : 1.0, t.triangle};
   if (side == 0) return SegmentHit{way == Way::kFromEnd ? 1.0 : 0.0, t.triangle};
   if (!t.has_distance) {
-    t.of_end = std::abs(dot(t.long_normal, long_difference(end_, *t.a)));
+    t.of_end = std::abs(dot(t.long_normal, long_difference(end_, t.corners[0])));
     t.has_distance = true;
   }
-  const Long of_other = std::abs(dot(t.long_normal, long_difference(other, *t.a)));
-  const double terms = distance_terms(t.normal.terms, end_, other, *t.a);
-  const double at = way == Way::kFromEnd ? place_between(t.of_end, of_other, terms, end_, other, *t.a, *t.b, *t.c)
-                                         : place_between(of_other, t.of_end, terms, other, end_, *t.a, *t.b, *t.c);
+  const Long of_other = std::abs(dot(t.long_normal, long_difference(other, t.corners[0])));
+  const double terms = distance_terms(t.normal.terms, end_, other, t.corners[0]);
+  const double at = way == Way::kFromEnd ? place_between(t.of_end, of_other, terms, end_, other, t.corners)
+                                         : place_between(of_other, t.of_end, terms, other, end_, t.corners);
   const int behind = way == Way::kFromEnd ? side : t.side;  // of the plane, in front of which w is less by one
   return SegmentHit{at, t.triangle, static_cast<std::int8_t>(how == Passage::kInside ? -behind : 0)};
 }

@@ -24,8 +24,7 @@ struct SegmentHit {
 // The point that the closed segment and the closed triangle have in common, where there is just one: nothing where the
 // triangle is parallel to the segment, or has no area. Whether there is one is exact, for all finite doubles. Needs
 // DefaultFloatingPoint. Thread-safe.
-[[nodiscard]] std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Vec3& a, const Vec3& b,
-                                                const Vec3& c);
+[[nodiscard]] std::optional<double> segment_hit(const Vec3& p, const Vec3& q, const Corners3& triangle);
 
 // segment_hit() of segments that have an end in common, with the same triangles. What they have in common is found
 // once.
@@ -50,7 +49,7 @@ class HitFinder {
   // What is not known yet is found when a segment's box meets that of the triangle. What is of the plane alone stays
   // for the next end, which mostly has the same triangles.
   struct Known {
-    const Vec3 *a, *b, *c;
+    Corners3 corners;
     Box box;
     std::uint32_t triangle = 0xFFFFFFFF;
     bool has_plane = false, has_sides = false, has_distance = false;

@@ -302,7 +302,7 @@ void CellContour::fill_flat(const Loop& loop) {
 std::optional<Vec3> CellContour::crease_exit(const Corners& corners, const kuhn::Tetrahedron& tetrahedron,
                                              const Vec3& from) {
   for (std::size_t lone = 0; lone < corners.size(); ++lone) {
-    std::array<Vec3, 3> face;
+    Corners3 face;
     std::size_t next = 0, inside = 0;
     for (std::size_t i = 0; i < corners.size(); ++i) {
       if (i == lone) continue;

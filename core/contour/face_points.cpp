@@ -28,7 +28,7 @@ struct PointsOfFace {
 
 // The mixed edges of a face: two of its three.
 struct FaceEdges {
-  std::array<Vec3, 3> corners;
+  Corners3 corners;
   std::array<const EdgePoint*, 2> points;
   std::array<Vec3, 2> normals;
 };
@@ -56,7 +56,7 @@ std::optional<FaceEdges> edges_of_two(const SurfaceInCells& surface, std::uint32
 }
 
 // Barycentric coordinates that are within the face, but for rounding, are moved into it.
-std::optional<Vec3> inside_face(const std::array<Vec3, 3>& corners, std::array<double, 3> weights, double margin) {
+std::optional<Vec3> inside_face(const Corners3& corners, std::array<double, 3> weights, double margin) {
   constexpr double kRounding = 1e-9;
   double sum = 0.0;
   for (double& weight : weights) {

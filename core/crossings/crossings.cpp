@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/data/interval.h"
+#include "core/data/triangle_mesh.h"
 #include "core/exact/predicates.h"
 
 namespace raycone {
@@ -76,7 +77,7 @@ Interval meeting(const Vec3& p, const Vec3& q, const Row& row) {
 // A line that crosses no inside of a triangle meets it in an interval from edge to edge, so the samples on it are
 // consecutive, and only those next to its ends are in doubt. Large flat triangles have many, fans of needles many
 // intervals. `edges`: what the sides of edges from a, b and c say.
-void find_samples_on(const std::array<Vec3, 3>& corners, const std::array<EdgeSide, 3>& edges, const Row& row,
+void find_samples_on(const Corners3& corners, const std::array<EdgeSide, 3>& edges, const Row& row,
                      TriangleCrossing& result) {
   Interval met = kEmptyInterval;
   for (std::size_t n = 0; n < 3; ++n) {

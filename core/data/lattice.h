@@ -46,6 +46,9 @@ struct Lattice {
   [[nodiscard]] double steps_from_first(int axis, double coordinate) const {
     return (coordinate - this->coordinate(axis, index_min[static_cast<std::size_t>(axis)])) / spacing[axis];
   }
+  [[nodiscard]] Vec3 steps_from_first(const Vec3& p) const {
+    return {steps_from_first(0, p.x), steps_from_first(1, p.y), steps_from_first(2, p.z)};
+  }
   // Cells are half-open, from one sample to the next, and numbered from 0 along each axis: the cell of an index, whole
   // or not. -1 is all that is before the first sample, `counts` all that is a step and more behind the last one.
   // Precondition: the index is not NaN, and `counts` is at most 2^62.

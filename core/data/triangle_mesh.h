@@ -30,10 +30,17 @@ struct TriangleMesh {
   std::vector<Triangle> triangles;
 };
 
-// Where its corners are.
-[[nodiscard]] inline std::array<Vec3, 3> corners_of(const TriangleMesh& mesh, const Triangle& triangle) {
-  return {mesh.vertices[triangle[0]], mesh.vertices[triangle[1]], mesh.vertices[triangle[2]]};
+// Where the corners of a triangle are, in its order.
+using Corners3 = std::array<Vec3, 3>;
+
+[[nodiscard]] inline Corners3 corners_of(const std::vector<Vec3>& vertices, const Triangle& triangle) {
+  return {vertices[triangle[0]], vertices[triangle[1]], vertices[triangle[2]]};
 }
+[[nodiscard]] inline Corners3 corners_of(const TriangleMesh& mesh, const Triangle& triangle) {
+  return corners_of(mesh.vertices, triangle);
+}
+
+[[nodiscard]] inline Box box_of(const Corners3& corners) { return box_of(corners[0], corners[1], corners[2]); }
 
 // The smallest box of the vertices that triangles use; of no triangles, empty_box().
 [[nodiscard]] Box bounding_box(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices);

@@ -73,7 +73,7 @@ double sum_of(const Vec3& magnitudes) { return magnitudes.x + magnitudes.y + mag
 
 // sure_turn() for the side of a point that is rounded. Each of six products is off by what one factor is, as above,
 // times the two others; they are not more than all of these, so trust has a factor of four to spare.
-int sure_side(const std::array<Vec3, 3>& triangle, const Vec3& p) {
+int sure_side(const Corners3& triangle, const Vec3& p) {
   double most = largest_coordinate(p);
   for (const Vec3& corner : triangle) most = std::max(most, largest_coordinate(corner));
   const Vec3 first = triangle[1] - triangle[0], second = triangle[2] - triangle[0], to = p - triangle[0];
@@ -156,7 +156,7 @@ ExactPoints::Number ExactPoints::add(const Vec3& vertex) {
   return table_->add(table_->fractions(without_signs), without_signs);
 }
 
-ExactPoints::Number ExactPoints::add_on_plane(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& plane) {
+ExactPoints::Number ExactPoints::add_on_plane(const Vec3& a, const Vec3& b, const Corners3& plane) {
   const IntegerVec3 from = table_->integers(a), to = table_->integers(b), corner = table_->integers(plane[0]);
   const IntegerVec3 normal = cross(table_->integers(plane[1]) - corner, table_->integers(plane[2]) - corner);
   const mpz_class before = dot(normal, from - corner), behind = dot(normal, to - corner);
@@ -211,7 +211,7 @@ int ExactPoints::axis_to_see(const std::array<Number, 3>& triangle) const {
   return *std::ranges::find_if(axes, [&](int axis) { return turn(axis, a, b, c) != 0; });
 }
 
-int ExactPoints::side(const std::array<Vec3, 3>& triangle, Number point) const {
+int ExactPoints::side(const Corners3& triangle, Number point) const {
   if (const int sign = sure_side(triangle, rounded(point)); sign != 0) return sign;
   const IntegerVec3 corner = table_->integers(triangle[0]);
   const IntegerVec3 normal = cross(table_->integers(triangle[1]) - corner, table_->integers(triangle[2]) - corner);

@@ -32,7 +32,7 @@ class ExactPoints {
   // A used vertex of the mesh.
   Number add(const Vec3& vertex);
   // Where the line through two vertices meets the plane through three others. Precondition: it does in one point.
-  Number add_on_plane(const Vec3& a, const Vec3& b, const std::array<Vec3, 3>& plane);
+  Number add_on_plane(const Vec3& a, const Vec3& b, const Corners3& plane);
   // Where a -> b crosses c -> d. Precondition: they are in one plane, which is seen along `axis`, and cross.
   Number add_crossing(int axis, Number a, Number b, Number c, Number d);
   // The mean of three points by these weights. Precondition: their sum is not 0.
@@ -48,7 +48,7 @@ class ExactPoints {
   // doubles tell. Precondition: it has an area.
   [[nodiscard]] int axis_to_see(const std::array<Number, 3>& triangle) const;
   // 1 in front of a triangle of the mesh, -1 behind it, 0 in its plane.
-  [[nodiscard]] int side(const std::array<Vec3, 3>& triangle, Number point) const;
+  [[nodiscard]] int side(const Corners3& triangle, Number point) const;
 
  private:
   struct Table;

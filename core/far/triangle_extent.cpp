@@ -1,8 +1,9 @@
 #include "core/far/triangle_extent.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "core/data/triangle_mesh.h"
 
 namespace raycone {
 namespace {
@@ -12,7 +13,7 @@ constexpr double kRoundsDown = 1 - 0x1p-40, kRoundsUp = 1 + 0x1p-40;
 // How far the box is, at least, from all of the corners' triangle in a direction; 0 where it is not known to be in
 // front of it. What differences, products and sums round is below the share that is taken off (docs/method.md, "Rules
 // on lattices"), whatever the direction.
-double gap_along(const Vec3& direction, const std::array<Vec3, 3>& corners, const Box& box) {
+double gap_along(const Vec3& direction, const Corners3& corners, const Box& box) {
   constexpr double kLeast = 0x1p-400;  // squares of less lose bits
   constexpr double kGapRounds = 0x1p-45;
   const double length = norm(direction);
@@ -38,7 +39,7 @@ TriangleExtent extent_of(const SolidTriangle& t) {
 
 // The plane's normal and those of its lines are at right angles but for rounding.
 double square_of_gap(const SolidTriangle& t, const TriangleExtent& extent, const Box& box) {
-  const std::array<Vec3, 3> corners{t.a, t.b, t.c};
+  const Corners3 corners{t.a, t.b, t.c};
   const Vec3 back{-t.normal.x, -t.normal.y, -t.normal.z};
   const double from_plane = std::max(gap_along(t.normal, corners, box), gap_along(back, corners, box));
   double within = 0.0;

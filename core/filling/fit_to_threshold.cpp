@@ -37,7 +37,7 @@ constexpr double kOff = 0x1p-20, kFarthest = 2.0, kIsland = 0.875;
 constexpr double kNextToSide = 0.05;
 
 // The barycentric coordinates of the point of a triangle that is nearest to p, but for rounding.
-Vec3 barycentric_of_nearest(const std::array<Vec3, 3>& corners, const Vec3& p) {
+Vec3 barycentric_of_nearest(const Corners3& corners, const Vec3& p) {
   const Vec3 u = corners[1] - corners[0], v = corners[2] - corners[0], w = p - corners[0];
   const double uu = dot(u, u), uv = dot(u, v), vv = dot(v, v), wu = dot(w, u), wv = dot(w, v);
   const double determinant = uu * vv - uv * uv;

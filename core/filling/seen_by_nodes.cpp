@@ -11,11 +11,9 @@
 namespace raycone {
 namespace {
 
-using Corners = std::array<Vec3, 3>;  // in steps of the lattice, from its first node
-
 // Whether visit(middle) holds for each part of a triangle; parts are no longer than `size` along any axis.
 template <class Visit>
-bool holds_for_parts(const Corners& corners, double size, const Visit& visit) {
+bool holds_for_parts(const Corners3& corners, double size, const Visit& visit) {
   std::array<double, 3> sides{};  // each across from its corner
   for (std::size_t n = 0; n < 3; ++n) sides[n] = largest_coordinate(corners[(n + 1) % 3] - corners[(n + 2) % 3]);
   const auto apex = static_cast<std::size_t>(std::ranges::max_element(sides) - sides.begin());
@@ -38,17 +36,17 @@ class MixedCells {
   [[nodiscard]] bool are_met_by(const std::vector<Triangle>& component, const std::vector<Vec3>& vertices) const {
     const auto is_not_mixed = [&](const Vec3& p) { return !is_mixed(cell_at(p)); };
     return std::ranges::any_of(
-        component, [&](const Triangle& t) { return !holds_for_parts(corners_of(t, vertices), 1.0, is_not_mixed); });
+        component, [&](const Triangle& t) { return !holds_for_parts(in_steps(t, vertices), 1.0, is_not_mixed); });
   }
 
   [[nodiscard]] bool is_within_lattice(const Triangle& t, const std::vector<Vec3>& vertices) const {
-    return std::ranges::all_of(corners_of(t, vertices), [&](const Vec3& p) { return is_within(p); });
+    return std::ranges::all_of(in_steps(t, vertices), [&](const Vec3& p) { return is_within(p); });
   }
 
   // Whether all of a triangle is in or beside a block of cells with one of them. Precondition: it is within the
   // lattice.
   [[nodiscard]] bool are_near_to(const Triangle& t, const std::vector<Vec3>& vertices) const {
-    return holds_for_parts(corners_of(t, vertices), static_cast<double>(kSide), [&](const Vec3& p) {
+    return holds_for_parts(in_steps(t, vertices), static_cast<double>(kSide), [&](const Vec3& p) {
       const NodeSet::Node cell = cell_at(p);
       return near_.holds(cell[0] / kSide, cell[1] / kSide, cell[2] / kSide);
     });
@@ -72,12 +70,10 @@ class MixedCells {
     }
   }
 
-  [[nodiscard]] Corners corners_of(const Triangle& t, const std::vector<Vec3>& vertices) const {
-    Corners corners;
-    for (std::size_t n = 0; n < 3; ++n) {
-      for (int axis = 0; axis < 3; ++axis)
-        corners[n][axis] = inside_.lattice().steps_from_first(axis, vertices[t[n]][axis]);
-    }
+  // In steps of the lattice, from its first node.
+  [[nodiscard]] Corners3 in_steps(const Triangle& t, const std::vector<Vec3>& vertices) const {
+    Corners3 corners = corners_of(vertices, t);
+    for (Vec3& corner : corners) corner = inside_.lattice().steps_from_first(corner);
     return corners;
   }
 

@@ -1,13 +1,9 @@
 // Whether two triangles of a mesh meet where they should not.
 #pragma once
 
-#include <array>
-
-#include "core/data/vec3.h"
+#include "core/data/triangle_mesh.h"
 
 namespace raycone {
-
-using Corners3 = std::array<Vec3, 3>;
 
 // Whether the closed triangles have a point in common that lies on no vertex and on no edge of both. A vertex is of
 // both where its position is, an edge where both its ends are. So neighbours may touch in what they share; two

@@ -8,11 +8,9 @@
 
 #include "core/data/box.h"
 #include "core/data/lattice.h"
-#include "core/data/vec3.h"
+#include "core/data/triangle_mesh.h"
 
 namespace raycone {
-
-using Corners3 = std::array<Vec3, 3>;
 
 // Faces before and after are compared along one direction, in which all of them are seen from their fronts and the
 // vertex's neighbours around it once. Both sets of faces are then graphs over one polygon, and their difference is

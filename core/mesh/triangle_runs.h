@@ -11,8 +11,7 @@ namespace raycone {
 
 // The box of one triangle. Precondition: triangle < mesh.triangles.size().
 [[nodiscard]] inline Box box_of_triangle(const TriangleMesh& mesh, std::uint32_t triangle) {
-  const Triangle& t = mesh.triangles[triangle];
-  return box_of(mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+  return box_of(corners_of(mesh, mesh.triangles[triangle]));
 }
 
 // All triangles of the mesh, in runs of `width` that are close together, these in runs of `width` runs, and so on: they

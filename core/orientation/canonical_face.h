@@ -1,7 +1,6 @@
 // What tells faces apart, whatever their order, their corners' order and their orientation in a file.
 #pragma once
 
-#include <array>
 #include <compare>
 #include <utility>
 #include <vector>
@@ -11,8 +10,8 @@
 namespace raycone {
 
 struct CanonicalFace {
-  std::array<Vec3, 3> corners;  // in lexicographic order
-  int sign = 1;                 // 1: the face runs around them in this order; -1: the other way round
+  Corners3 corners;  // in lexicographic order
+  int sign = 1;      // 1: the face runs around them in this order; -1: the other way round
 
   friend std::strong_ordering operator<=>(const CanonicalFace& a, const CanonicalFace& b) {
     for (std::size_t i = 0; i < 3; ++i) {
@@ -23,7 +22,7 @@ struct CanonicalFace {
 };
 
 [[nodiscard]] inline CanonicalFace canonical_face(const Triangle& t, const std::vector<Vec3>& vertices) {
-  CanonicalFace face{{vertices[t[0]], vertices[t[1]], vertices[t[2]]}, 1};
+  CanonicalFace face{corners_of(vertices, t), 1};
   const auto sort_pair = [&](std::size_t i, std::size_t j) {
     if (lexicographic_order(face.corners[i], face.corners[j]) <= 0) return;
     std::swap(face.corners[i], face.corners[j]);

@@ -27,7 +27,7 @@ std::vector<SizedFace> largest_faces(const ClosedSurface& surface, const std::ve
   std::vector<SizedFace> faces;
   faces.reserve(surface.faces.size());
   for (const Triangle& t : surface.faces) {
-    const Box box = box_of(vertices[t[0]], vertices[t[1]], vertices[t[2]]);
+    const Box box = box_of(corners_of(vertices, t));
     faces.push_back({half_longest_side(box), canonical_face(t, vertices)});
   }
   if (faces.size() <= most) return faces;

@@ -22,7 +22,7 @@ constexpr std::size_t kLargeSurface = 32;  // faces: from here on the cone is fa
 std::int64_t in_units(double value, double units) { return std::llround(value * units); }
 
 // Van Oosterom and Strackee 1983, eq. 8. On the face: the mean of both sides.
-double turns_of(const std::array<Vec3, 3>& corners, const Vec3& q) {
+double turns_of(const Corners3& corners, const Vec3& q) {
   const Vec3 a = corners[0] - q, b = corners[1] - q, c = corners[2] - q;
   constexpr double kOnFace = 1e-9;  // of the imaginary part beside the real one: far above rounding
   const double la = norm(a), lb = norm(b), lc = norm(c);

@@ -1,7 +1,6 @@
 // Winding numbers of one open surface at samples, for the choice of its orientation: near exact, from afar a dipole.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -70,7 +69,7 @@ class SurfaceField {
 
   [[nodiscard]] double of_triangles(const Vec3& q) const;
 
-  std::vector<std::array<Vec3, 3>> faces_;  // of a small surface, which is summed face by face
+  std::vector<Corners3> faces_;  // of a small surface, which is summed face by face
   std::unique_ptr<const Large> large_;
   SurfaceDipole dipole_;
 };

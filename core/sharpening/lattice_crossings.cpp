@@ -14,7 +14,7 @@ namespace {
 // The lines of the lattice along an axis, as they see a triangle: in two coordinates.
 class Lines {
  public:
-  Lines(const std::array<Vec3, 3>& triangle, const Lattice& lattice, int axis)
+  Lines(const Corners3& triangle, const Lattice& lattice, int axis)
       : triangle_(triangle), lattice_(lattice), right_((axis + 1) % 3), up_((axis + 2) % 3) {
     const Vec3 to_b = triangle[1] - triangle[0], to_c = triangle[2] - triangle[0];
     area_ = to_b[right_] * to_c[up_] - to_b[up_] * to_c[right_];
@@ -63,7 +63,7 @@ class Lines {
     return weights;
   }
 
-  const std::array<Vec3, 3>& triangle_;
+  const Corners3& triangle_;
   const Lattice& lattice_;
   int right_, up_;
   double area_;  // twice that of the projection
@@ -71,9 +71,9 @@ class Lines {
 
 }  // namespace
 
-std::vector<Vec3> crossings_off_mesh(const std::array<Vec3, 3>& triangle, const Lattice& lattice,
+std::vector<Vec3> crossings_off_mesh(const Corners3& triangle, const Lattice& lattice,
                                      const DistanceEvaluator& distance, double off) {
-  const Box box = box_of(triangle[0], triangle[1], triangle[2]);
+  const Box box = box_of(triangle);
   std::vector<Vec3> points;
   for (int axis = 0; axis < 3; ++axis) {
     Lines(triangle, lattice, axis).for_each_crossing(box, [&](const Vec3& p) { points.push_back(p); });

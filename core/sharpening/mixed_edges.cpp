@@ -106,8 +106,7 @@ std::vector<Vec3> MixedEdges::points_off(const SurfaceMesh& surface, std::uint32
   const Triangle& t = surface.mesh.triangles[face];
   if (is_gone(t) || surface.sources[face] == kHole) return {};
   const std::vector<Vec3>& vertices = surface.mesh.vertices;
-  std::vector<Vec3> points =
-      crossings_off_mesh({vertices[t[0]], vertices[t[1]], vertices[t[2]]}, lattice_, input_.distance, limits_.off);
+  std::vector<Vec3> points = crossings_off_mesh(corners_of(vertices, t), lattice_, input_.distance, limits_.off);
   std::erase_if(points, [&](const Vec3& p) {
     return std::ranges::none_of(edges_at(p, lattice_, limits_.off),
                                 [&](const Edge& edge) { return is_mixed(edge, inside_); });

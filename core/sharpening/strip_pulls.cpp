@@ -1,7 +1,6 @@
 #include "core/sharpening/strip_pulls.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iterator>
 #include <span>
@@ -301,7 +300,7 @@ bool StripPulls::add_plane(std::uint32_t face, std::vector<SourcePlane>& planes)
 bool StripPulls::keeps_fronts(std::uint32_t vertex, std::uint32_t other, const Vec3& place) const {
   return std::ranges::all_of(faces(vertex), [&](std::uint32_t face) {
     if (has(face, other)) return true;
-    std::array<Vec3, 3> before, after;
+    Corners3 before, after;
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t corner = state_.triangles[face][i];
       before[i] = position(corner);

@@ -18,29 +18,21 @@ namespace {
 
 constexpr std::size_t kFacesInTask = 4096;
 
-struct Corners {
-  const Vec3 &a, &b, &c;
+Vec3 normal_of(const Corners3& face) { return unit_normal(face[0], face[1], face[2]); }
 
-  [[nodiscard]] Vec3 normal() const { return unit_normal(a, b, c); }
-  // No sum overflows.
-  [[nodiscard]] Vec3 middle() const { return (1.0 / 3) * a + (1.0 / 3) * b + (1.0 / 3) * c; }
-};
-
-Corners corners_of(const TriangleMesh& mesh, std::size_t face) {
-  const Triangle& t = mesh.triangles[face];
-  return {mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]};
-}
+// No sum overflows.
+Vec3 middle_of(const Corners3& face) { return (1.0 / 3) * face[0] + (1.0 / 3) * face[1] + (1.0 / 3) * face[2]; }
 
 // Whether the face is at 15 degrees or less to a plane with this normal, of length 1. Fronts may look either way: rules
 // take faces from their backs, too. A few roundings decide nothing by themselves: then the exact normal is asked.
-bool is_along(const Corners& face, const Vec3& normal) {
+bool is_along(const Corners3& face, const Vec3& normal) {
   constexpr double kDoubt = 1e-9, kNeedle = 1e-10, kLeast = 1e-200, kMost = 1e200;
-  const Vec3 u = face.b - face.a, v = face.c - face.a, across = cross(u, v);
+  const Vec3 u = face[1] - face[0], v = face[2] - face[0], across = cross(u, v);
   const double size = dot(across, across), cosine = dot(normal, across);
   const double excess = cosine * cosine - kSharpCosine * kSharpCosine * size;
   const bool is_sure = size > kNeedle * dot(u, u) * dot(v, v) && std::abs(excess) > kDoubt * size;
   if (is_sure && size > kLeast && size < kMost) return excess > 0.0;
-  return std::abs(dot(normal, face.normal())) >= kSharpCosine;
+  return std::abs(dot(normal, normal_of(face))) >= kSharpCosine;
 }
 
 // Faces beside one that closes a hole, and in line with it, close it too, if they are on no triangle: at a rim all of
@@ -56,6 +48,9 @@ void spread_holes(const std::vector<std::uint8_t>& may_close, SurfaceMesh& surfa
     const Triangle& t = surface.mesh.triangles[face];
     return Edge{t[i], t[(i + 1) % 3]};
   };
+  const auto normal_at = [&mesh = surface.mesh](std::uint32_t face) {
+    return normal_of(corners_of(mesh, mesh.triangles[face]));
+  };
   std::vector<std::pair<Edge, std::uint32_t>> edges;
   for (std::uint32_t face = 0; face < may_close.size(); ++face) {
     for (std::size_t i = 0; may_close[face] != 0 && i < 3; ++i) edges.emplace_back(edge(face, i), face);
@@ -69,8 +64,7 @@ void spread_holes(const std::vector<std::uint8_t>& may_close, SurfaceMesh& surfa
       const auto beside = std::ranges::lower_bound(edges, std::pair(Edge{to, from}, std::uint32_t{0}));
       if (beside == edges.end() || beside->first != Edge{to, from}) continue;
       std::int32_t& source = surface.sources[beside->second];
-      const Vec3 here = corners_of(surface.mesh, face).normal();
-      if (source == kHole || !(dot(here, corners_of(surface.mesh, beside->second).normal()) >= kSharpCosine)) continue;
+      if (source == kHole || !(dot(normal_at(face), normal_at(beside->second)) >= kSharpCosine)) continue;
       source = kHole;
       closing.push_back(beside->second);
     }
@@ -84,12 +78,10 @@ SourceSettler::SourceSettler(const TriangleMesh& input, const TriangleNormals& n
     : input_(input), normals_(normals), distance_(distance), off_(off) {}
 
 bool SourceSettler::may_be_of(const SurfaceMesh& surface, std::size_t number, std::uint32_t source) const {
-  const Corners face = corners_of(surface.mesh, number);
+  const Corners3 face = corners_of(surface.mesh, surface.mesh.triangles[number]);
   const Vec3 &point = input_.vertices[input_.triangles[source][0]], normal = normals_.of(source);
-  for (const Vec3* corner : {&face.a, &face.b, &face.c}) {
-    if (!(std::abs(dot(normal, *corner - point)) <= off_)) return false;
-  }
-  return is_along(face, normal);
+  return std::ranges::all_of(face, [&](const Vec3& p) { return std::abs(dot(normal, p - point)) <= off_; }) &&
+         is_along(face, normal);
 }
 
 std::vector<std::uint32_t> SourceSettler::doubtful_faces(const SurfaceMesh& surface) const {
@@ -106,7 +98,9 @@ void SourceSettler::settle(SurfaceMesh& surface) const {
   if (faces.empty()) return;
   std::vector<Vec3> middles;
   middles.reserve(faces.size());
-  for (const std::uint32_t face : faces) middles.push_back(corners_of(surface.mesh, face).middle());
+  for (const std::uint32_t face : faces) {
+    middles.push_back(middle_of(corners_of(surface.mesh, surface.mesh.triangles[face])));
+  }
   std::vector<std::uint32_t> nearest(faces.size());
   distance_.find_nearest(middles, nearest);
   std::vector<std::uint8_t> off_mesh(surface.sources.size(), 0);

@@ -25,14 +25,14 @@ using test::uniform;
 TEST(SegmentHit, IsExactAboutEnds) {
   const DefaultFloatingPoint guard;
   const Vec3 a{0, 0, 0}, b{1, 0, 0}, c{0, 1, 0};
-  EXPECT_EQ(segment_hit({0.25, 0.25, -1}, {0.25, 0.25, 1}, a, b, c), 0.5);
-  EXPECT_EQ(segment_hit({0.25, 0.25, 0}, {0.25, 0.25, 1}, a, b, c), 0.0);
-  EXPECT_EQ(segment_hit({0.25, 0.25, 1}, {0.25, 0.25, 0}, a, b, c), 1.0);
-  EXPECT_EQ(segment_hit({1, 0, -1}, {1, 0, 1}, a, b, c), 0.5);                                  // through a corner
-  EXPECT_EQ(segment_hit({std::nextafter(1.0, 2.0), 0, -1}, {1, 0, 1}, a, b, c), std::nullopt);  // and beside it
-  EXPECT_EQ(segment_hit({-1, 0.25, 0}, {1, 0.25, 0}, a, b, c), std::nullopt);                   // in its plane
-  EXPECT_EQ(segment_hit({0.25, 0.25, 0x1p-1074}, {0.25, 0.25, 1}, a, b, c), std::nullopt);
-  EXPECT_EQ(segment_hit({0.25, 0.25, -1}, {0.25, 0.25, 1}, a, b, {2, 0, 0}), std::nullopt);  // without area
+  EXPECT_EQ(segment_hit({0.25, 0.25, -1}, {0.25, 0.25, 1}, {a, b, c}), 0.5);
+  EXPECT_EQ(segment_hit({0.25, 0.25, 0}, {0.25, 0.25, 1}, {a, b, c}), 0.0);
+  EXPECT_EQ(segment_hit({0.25, 0.25, 1}, {0.25, 0.25, 0}, {a, b, c}), 1.0);
+  EXPECT_EQ(segment_hit({1, 0, -1}, {1, 0, 1}, {a, b, c}), 0.5);                                  // through a corner
+  EXPECT_EQ(segment_hit({std::nextafter(1.0, 2.0), 0, -1}, {1, 0, 1}, {a, b, c}), std::nullopt);  // and beside it
+  EXPECT_EQ(segment_hit({-1, 0.25, 0}, {1, 0.25, 0}, {a, b, c}), std::nullopt);                   // in its plane
+  EXPECT_EQ(segment_hit({0.25, 0.25, 0x1p-1074}, {0.25, 0.25, 1}, {a, b, c}), std::nullopt);
+  EXPECT_EQ(segment_hit({0.25, 0.25, -1}, {0.25, 0.25, 1}, {a, b, {2, 0, 0}}), std::nullopt);  // without area
 }
 
 // Whole numbers, so that many ends and edges are in planes of triangles, on their sides or at their corners.
@@ -62,8 +62,7 @@ TEST(HitFinder, FindsWhatSegmentsHitOneByOne) {
             const Triangle& t = mesh.triangles[triangle];
             const auto hit = std::ranges::find(hits, triangle, &SegmentHit::triangle);
             const std::optional<double> found = hit == hits.end() ? std::nullopt : std::optional(hit->at);
-            const std::optional<double> here =
-                segment_hit(p, q, mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]);
+            const std::optional<double> here = segment_hit(p, q, corners_of(mesh, t));
             ASSERT_EQ(found, here) << step << " " << round << " " << ends << " " << others << " " << triangle;
             at_ends += here == 0.0 || here == 1.0 ? 1 : 0;
             between += here && *here > 0.0 && *here < 1.0 ? 1 : 0;
@@ -90,7 +89,7 @@ TEST(SegmentHit, IsRightWhereTheSegmentIsNearlyInThePlane) {
     const double u = uniform(random, 0, 0.5), v = uniform(random, 0, 0.5);
     const Vec3 p = a + u * (b - a) + v * (c - a),
                q = p + uniform(random, 0, 2) * (b - a) + uniform(random, 0, 2) * (c - a);
-    const std::optional<double> at = segment_hit(p, q, a, b, c);
+    const std::optional<double> at = segment_hit(p, q, {a, b, c});
     if (!at) continue;
     ++hits;
     const QuadVec3 normal = cross(quad_difference(b, a), quad_difference(c, a));
@@ -145,7 +144,7 @@ TEST(EdgeCrossing, PlacesAreRightWhereBothEndsAreNextToThePlane) {
   const DefaultFloatingPoint guard;
   for (const auto& [points, expected] : kNearPlanes) {
     const auto& [a, b, c, p, q] = points;
-    const std::optional<double> at = segment_hit(p, q, a, b, c);
+    const std::optional<double> at = segment_hit(p, q, {a, b, c});
     ASSERT_TRUE(at);
     EXPECT_NEAR(*at, expected, 1e-15);
     const TriangleMesh mesh{{a, b, c}, {{0, 1, 2}}};
@@ -167,7 +166,7 @@ TEST(EdgeCrossing, PlacesAreThoseOfAnyScale) {
     std::array<Vec3, 5> points;
     for (Vec3& v : points) v = {uniform(random, -1, 1), uniform(random, -1, 1), 1e-6 * uniform(random, -1, 1)};
     const auto at_scale = [&](double s) {
-      return segment_hit(s * points[3], s * points[4], s * points[0], s * points[1], s * points[2]);
+      return segment_hit(s * points[3], s * points[4], {s * points[0], s * points[1], s * points[2]});
     };
     const std::optional<double> at = at_scale(1.0);
     hit += at ? 1 : 0;

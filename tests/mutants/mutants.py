@@ -840,7 +840,7 @@ MUTANTS = [
         ("core/merging/merge_planes.cpp", "if (kept[v] != kept_[v]) changed.push_back(v);",
          "if (kept[v] != kept_[v] && v % 2 == 0) changed.push_back(v);")]),
     Mutant("sources_of_parallel_planes", "a face that is far from its source's plane gets another source", [
-        ("core/surface/face_sources.cpp", "*corner - point)) <= off_)", "*corner - point)) <= 1e9 * off_)")]),
+        ("core/surface/face_sources.cpp", "p - point)) <= off_;", "p - point)) <= 1e9 * off_;")]),
     Mutant("small_triangles_without_turns", "products of eight small triangles are counted as they turn", [
         ("core/far/chunk_lanes-inl.h", "times(load(products, block.i), re, im, hn::CopySignToAbs(hn::Set(d, 1.0), im))",
          "times(load(products, block.i), re, im, hn::Zero(d))")]),

@@ -85,19 +85,14 @@ void Thumbnail::choose_layer(const Lattice& lattice) {
 
 void Thumbnail::add(const Lattice& lattice, const LatticeBlock& block, std::span<const double> values) {
   if (colours_.empty()) choose_layer(lattice);
-  std::array<std::int64_t, 3> offset{};  // of a sample, in the block
-  offset[across_] = layer_ - block.first[across_];
+  LatticeIndex shown{};
+  shown[across_] = layer_;
   for (std::int64_t row = 0; row < height_; ++row) {
-    offset[up_] = lattice.index_min[up_] + sample_of(row, height_, lattice.counts[up_]) - block.first[up_];
+    shown[up_] = lattice.index_min[up_] + sample_of(row, height_, lattice.counts[up_]);
     for (std::int64_t column = 0; column < width_; ++column) {
-      offset[right_] =
-          lattice.index_min[right_] + sample_of(column, width_, lattice.counts[right_]) - block.first[right_];
-      const bool inside = std::ranges::all_of(std::array<std::size_t, 3>{0, 1, 2}, [&](std::size_t axis) {
-        return 0 <= offset[axis] && offset[axis] < block.counts[axis];
-      });
-      if (!inside) continue;
-      const std::int64_t sample = (offset[2] * block.counts[1] + offset[1]) * block.counts[0] + offset[0];
-      colours_[static_cast<std::size_t>(row * width_ + column)] = colour_of(values[static_cast<std::size_t>(sample)]);
+      shown[right_] = lattice.index_min[right_] + sample_of(column, width_, lattice.counts[right_]);
+      if (!block.holds(shown)) continue;
+      colours_[static_cast<std::size_t>(row * width_ + column)] = colour_of(values[block.number_of(shown)]);
     }
   }
 }

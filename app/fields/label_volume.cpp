@@ -39,10 +39,7 @@ void LabelVolume::for_rows(const LatticeBlock& block, const Visit& visit) const 
   const std::size_t rows = static_cast<std::size_t>(block.counts[1]) * static_cast<std::size_t>(block.counts[2]);
   const std::size_t grain = (std::size_t{1} << 14) / length + 1;
   parallel_for_each(rows, grain, [&](std::size_t row) {
-    const auto y = block.first[1] - lattice_.index_min[1] + static_cast<std::int64_t>(row) % block.counts[1];
-    const auto z = block.first[2] - lattice_.index_min[2] + static_cast<std::int64_t>(row) / block.counts[1];
-    const auto x = block.first[0] - lattice_.index_min[0];
-    visit(static_cast<std::size_t>((z * lattice_.counts[1] + y) * lattice_.counts[0] + x), row * length, length);
+    visit(whole(lattice_).number_of(block.index_of(row * length)), row * length, length);
   });
 }
 

@@ -49,24 +49,17 @@ void SampleDraw::keep(const DrawnSample& sample) {
 void SampleDraw::offer(const PlacedLattice& lattice, const LatticeBlock& block, const SampleNumbers& numbers,
                        const SignedBlocks* distances) {
   if (count_ == 0) return;
-  const auto layer = [&](std::size_t axis, std::int64_t index) {
-    return static_cast<std::uint64_t>(index - lattice.grid.index_min[axis]);
-  };
-  const auto nx = static_cast<std::uint64_t>(lattice.grid.counts[0]);
-  const auto ny = static_cast<std::uint64_t>(lattice.grid.counts[1]);
-  std::size_t n = 0;
-  for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
-    for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
-      for (std::int64_t i = block.first[0]; i < block.first[0] + block.counts[0]; ++i, ++n) {
-        const std::uint64_t number = (layer(2, k) * ny + layer(1, j)) * nx + layer(0, i);
-        const std::uint64_t rank = rank_of(number);
-        if (!takes(rank)) continue;
-        DrawnSample sample = drawn_sample(number, rank, lattice.position(i, j, k), numbers, n);
-        if (distances) sample.distance = distances->at({i, j, k});
-        keep(sample);
-      }
-    }
-  }
+  const LatticeBlock all = whole(lattice.grid);
+  std::size_t n = 0;  // in the block
+  for_each_sample(block, [&](const LatticeIndex& index) {
+    const std::size_t in_block = n++;
+    const std::uint64_t number = all.number_of(index), rank = rank_of(number);
+    if (!takes(rank)) return;
+    const auto& [i, j, k] = index;
+    DrawnSample sample = drawn_sample(number, rank, lattice.position(i, j, k), numbers, in_block);
+    if (distances) sample.distance = distances->at(index);
+    keep(sample);
+  });
 }
 
 void SampleDraw::offer(std::span<const Vec3> points, const SampleNumbers& numbers) {

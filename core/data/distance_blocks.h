@@ -22,7 +22,7 @@ class DistanceBlocks {
   static constexpr std::size_t kSamples = 512;  // of a block, and its voxels beside the lattice
 
   // The place of a sample in its block: x fastest.
-  [[nodiscard]] static constexpr std::size_t index_in_block(const std::array<std::int64_t, 3>& sample) {
+  [[nodiscard]] static constexpr std::size_t index_in_block(const LatticeIndex& sample) {
     const auto in_block = [](std::int64_t i) { return static_cast<std::size_t>(i & (kSide - 1)); };
     return (in_block(sample[2]) * kSide + in_block(sample[1])) * kSide + in_block(sample[0]);
   }
@@ -51,7 +51,7 @@ class DistanceBlocks {
   [[nodiscard]] static std::int64_t block_of(std::int64_t index) { return index >> 3; }
 
   // The samples that the block at a place consists of.
-  [[nodiscard]] LatticeBlock samples_of(const std::array<std::int64_t, 3>& place) const {
+  [[nodiscard]] LatticeBlock samples_of(const LatticeIndex& place) const {
     LatticeBlock part;
     for (std::size_t a = 0; a < 3; ++a) {
       part.first[a] = std::max(place[a] * kSide, samples_.first[a]);
@@ -61,7 +61,7 @@ class DistanceBlocks {
   }
 
   // The numbers of the block at a place, by index_in_block(); none where all are beyond the band.
-  [[nodiscard]] std::span<const double> numbers(const std::array<std::int64_t, 3>& place) const {
+  [[nodiscard]] std::span<const double> numbers(const LatticeIndex& place) const {
     const Strip& strip = strip_at(place[1]);
     const std::uint32_t number = strip.places[index_in_strip(place)];
     if (number == kBeyond) return {};
@@ -70,7 +70,7 @@ class DistanceBlocks {
 
   // Makes room for numbers of the block at a place, which has none. They are `beyond`. What was obtained of the strip
   // before is no longer valid.
-  [[nodiscard]] std::span<double> add(const std::array<std::int64_t, 3>& place) {
+  [[nodiscard]] std::span<double> add(const LatticeIndex& place) {
     Strip& strip = strips_[static_cast<std::size_t>(place[1] - first_[1])];
     const std::size_t at = strip.numbers.size();
     strip.places[index_in_strip(place)] = static_cast<std::uint32_t>(at / kSamples);
@@ -78,7 +78,7 @@ class DistanceBlocks {
     return std::span(strip.numbers).subspan(at, kSamples);
   }
 
-  [[nodiscard]] double at(const std::array<std::int64_t, 3>& sample) const {
+  [[nodiscard]] double at(const LatticeIndex& sample) const {
     const std::span<const double> all = numbers({block_of(sample[0]), block_of(sample[1]), block_of(sample[2])});
     return all.empty() ? beyond_ : all[index_in_block(sample)];
   }
@@ -91,13 +91,14 @@ class DistanceBlocks {
   static constexpr std::uint32_t kBeyond = std::numeric_limits<std::uint32_t>::max();
 
   [[nodiscard]] const Strip& strip_at(std::int64_t y) const { return strips_[static_cast<std::size_t>(y - first_[1])]; }
-  [[nodiscard]] std::size_t index_in_strip(const std::array<std::int64_t, 3>& place) const {
+  [[nodiscard]] std::size_t index_in_strip(const LatticeIndex& place) const {
     return static_cast<std::size_t>((place[2] - first_[2]) * counts_[0] + place[0] - first_[0]);
   }
 
   LatticeBlock samples_;
   double beyond_ = 0.0;
-  std::array<std::int64_t, 3> first_{}, counts_{};
+  LatticeIndex first_{};
+  std::array<std::int64_t, 3> counts_{};
   std::vector<Strip> strips_;
 };
 
@@ -107,13 +108,10 @@ struct SignedBlocks {
   std::span<const std::uint8_t> inside;  // 1 or 0, of each of distances.samples(), x fastest, then y, then z
 
   // `inside` of the samples of a row from `sample` on.
-  [[nodiscard]] std::span<const std::uint8_t> inside_from(const std::array<std::int64_t, 3>& sample) const {
-    const LatticeBlock& all = distances.samples();
-    const auto behind = [&](std::size_t axis) { return sample[axis] - all.first[axis]; };
-    const std::int64_t n = (behind(2) * all.counts[1] + behind(1)) * all.counts[0] + behind(0);
-    return inside.subspan(static_cast<std::size_t>(n));
+  [[nodiscard]] std::span<const std::uint8_t> inside_from(const LatticeIndex& sample) const {
+    return inside.subspan(distances.samples().number_of(sample));
   }
-  [[nodiscard]] double at(const std::array<std::int64_t, 3>& sample) const {
+  [[nodiscard]] double at(const LatticeIndex& sample) const {
     return inside_from(sample)[0] != 0 ? -distances.at(sample) : distances.at(sample);
   }
 };

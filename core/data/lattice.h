@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 
 #include "core/data/vec3.h"
 
 namespace raycone {
+
+// Of a sample, along x, y and z.
+using LatticeIndex = std::array<std::int64_t, 3>;
 
 // The samples with indices index_min[a] <= index < index_min[a] + counts[a] along each axis a. An index has the
 // coordinate origin + index * spacing. Product and sum are each rounded to double, so that samples lie exactly where
@@ -16,14 +20,14 @@ namespace raycone {
 struct Lattice {
   Vec3 origin;   // world position of index (0, 0, 0), which need not be a sample
   Vec3 spacing;  // world units per index step, positive
-  std::array<std::int64_t, 3> index_min{0, 0, 0};
+  LatticeIndex index_min{0, 0, 0};
   std::array<std::int64_t, 3> counts{1, 1, 1};  // each at least 1
 
   [[nodiscard]] double coordinate(int axis, std::int64_t index) const {
     const double step = static_cast<double>(index) * spacing[axis];
     return origin[axis] + step;
   }
-  [[nodiscard]] Vec3 position(const std::array<std::int64_t, 3>& index) const {
+  [[nodiscard]] Vec3 position(const LatticeIndex& index) const {
     return {coordinate(0, index[0]), coordinate(1, index[1]), coordinate(2, index[2])};
   }
   [[nodiscard]] std::int64_t index_max(int axis) const {
@@ -76,12 +80,23 @@ inline constexpr std::int64_t kMaxBlockSide = 0xFFFFFFFF;
 // A box of samples: along each axis a those with first[a] <= index < first[a] + counts[a]. These are indices of the
 // lattice, so first >= index_min. The values of a block are stored x fastest, then y, then z.
 struct LatticeBlock {
-  std::array<std::int64_t, 3> first{0, 0, 0};
+  LatticeIndex first{0, 0, 0};
   std::array<std::int64_t, 3> counts{0, 0, 0};
 
   [[nodiscard]] std::int64_t size() const { return counts[0] * counts[1] * counts[2]; }
-  // In the lattice, of the sample `number`, counted from 0 in the order of values.
-  [[nodiscard]] std::array<std::int64_t, 3> index_of(std::size_t number) const {
+  [[nodiscard]] bool holds(const LatticeIndex& index) const {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (index[a] < first[a] || index[a] >= first[a] + counts[a]) return false;
+    }
+    return true;
+  }
+  // Of a sample that it holds, counted from 0 in the order of values.
+  [[nodiscard]] std::size_t number_of(const LatticeIndex& index) const {
+    const auto behind = [&](std::size_t a) { return index[a] - first[a]; };
+    return static_cast<std::size_t>((behind(2) * counts[1] + behind(1)) * counts[0] + behind(0));
+  }
+  // The sample of this number.
+  [[nodiscard]] LatticeIndex index_of(std::size_t number) const {
     const auto n = static_cast<std::int64_t>(number);
     const std::int64_t row = n / counts[0];
     return {first[0] + n % counts[0], first[1] + row % counts[1], first[2] + row / counts[1]};
@@ -89,5 +104,15 @@ struct LatticeBlock {
 };
 
 [[nodiscard]] inline LatticeBlock whole(const Lattice& lattice) { return {lattice.index_min, lattice.counts}; }
+
+// Calls visit(index) for the samples of a block, in the order of values.
+template <class Visit>
+void for_each_sample(const LatticeBlock& block, const Visit& visit) {
+  for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
+    for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
+      for (std::int64_t i = block.first[0]; i < block.first[0] + block.counts[0]; ++i) visit(LatticeIndex{i, j, k});
+    }
+  }
+}
 
 }  // namespace raycone

@@ -63,8 +63,6 @@ double length_without_overflow(const Vec3& p) {
   return std::min(PowerOfTwo(exponent)(std::sqrt(dot(q, q))), kLargest);
 }
 
-using LatticeIndex = std::array<std::int64_t, 3>;
-
 constexpr std::int64_t kSide = DistanceBlocks::kSide;
 static_assert(kSide == static_cast<std::int64_t>(kBlockSide));
 
@@ -81,29 +79,6 @@ void take_block(const SampleBox& box, std::span<const double> numbers, DistanceB
       const std::size_t to = DistanceBlocks::index_in_block(
           {first[0], first[1] + static_cast<std::int64_t>(j), first[2] + static_cast<std::int64_t>(k)});
       std::ranges::copy(numbers.subspan(place_in_block({0, j, k}), box.side(0)), taken.subspan(to).begin());
-    }
-  }
-}
-
-bool holds(const LatticeBlock& block, const LatticeIndex& index) {
-  for (std::size_t a = 0; a < 3; ++a) {
-    if (index[a] < block.first[a] || index[a] >= block.first[a] + block.counts[a]) return false;
-  }
-  return true;
-}
-
-// Where its value is stored.
-std::size_t index_in(const LatticeBlock& block, const LatticeIndex& index) {
-  const auto behind = [&](std::size_t axis) { return index[axis] - block.first[axis]; };
-  return static_cast<std::size_t>((behind(2) * block.counts[1] + behind(1)) * block.counts[0] + behind(0));
-}
-
-// In the order in which values are stored.
-template <class Visit>
-void for_each_sample(const LatticeBlock& block, const Visit& visit) {
-  for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
-    for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
-      for (std::int64_t i = block.first[0]; i < block.first[0] + block.counts[0]; ++i) visit(LatticeIndex{i, j, k});
     }
   }
 }
@@ -230,7 +205,7 @@ void DistanceEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& blo
   double* distance = distances.data();
   for_each_sample(block, [&](const LatticeIndex& sample) {
     *distance++ =
-        holds(near, sample) ? *near_distance++ : std::min(length_without_overflow(lattice.position(sample)), band);
+        near.holds(sample) ? *near_distance++ : std::min(length_without_overflow(lattice.position(sample)), band);
   });
 }
 
@@ -251,7 +226,7 @@ void DistanceEvaluator::evaluate(const Lattice& lattice, const LatticeBlock& blo
     std::array<double, DistanceBlocks::kSamples> of_block;
     of_block.fill(distances.beyond());
     for_each_sample(samples, [&](const LatticeIndex& sample) {
-      of_block[DistanceBlocks::index_in_block(sample)] = numbers[index_in(block, sample)];
+      of_block[DistanceBlocks::index_in_block(sample)] = numbers[block.number_of(sample)];
     });
     if (std::ranges::min(of_block) < distances.beyond()) std::ranges::copy(of_block, distances.add(place).begin());
   });

@@ -22,14 +22,11 @@ namespace raycone {
 template <class Number>
 void copy_part(const LatticeBlock& whole, const LatticeBlock& part, std::span<const Number> from,
                std::span<Number> to) {
-  const auto offset = [&](std::size_t axis) { return part.first[axis] - whole.first[axis]; };
-  for (std::int64_t k = 0; k < part.counts[2]; ++k) {
-    for (std::int64_t j = 0; j < part.counts[1]; ++j) {
-      const std::ptrdiff_t source = (k * part.counts[1] + j) * part.counts[0];
-      const std::ptrdiff_t place = ((offset(2) + k) * whole.counts[1] + offset(1) + j) * whole.counts[0] + offset(0);
-      std::copy_n(from.begin() + source, part.counts[0], to.begin() + place);
-    }
-  }
+  const LatticeBlock row_starts{part.first, {1, part.counts[1], part.counts[2]}};
+  for_each_sample(row_starts, [&](const LatticeIndex& start) {
+    const auto row = from.subspan(part.number_of(start), static_cast<std::size_t>(part.counts[0]));
+    std::ranges::copy(row, to.subspan(whole.number_of(start)).begin());
+  });
 }
 
 // Room for what is computed of a part before it finds its place in the whole.

@@ -19,13 +19,13 @@ namespace {
 // Of a lattice.
 struct Edge {
   std::size_t axis;
-  std::array<std::int64_t, 3> lower;  // indices of its lower end
+  LatticeIndex lower;  // of its lower end
   auto operator<=>(const Edge&) const = default;
 };
 
 // The edges that a point is on; `off`: how far it may be from them.
 std::vector<Edge> edges_at(const Vec3& p, const Lattice& lattice, double off) {
-  std::array<std::int64_t, 3> nearest, below;
+  LatticeIndex nearest, below;
   std::array<bool, 3> is_level;
   for (std::size_t a = 0; a < 3; ++a) {
     const int axis = static_cast<int>(a);
@@ -53,18 +53,14 @@ std::map<Edge, std::vector<std::uint32_t>> pulled_off_edges(const SurfaceEdit& c
   return pulled;
 }
 
-bool holds(const NodeSet& nodes, const std::array<std::int64_t, 3>& index) {
+bool holds(const NodeSet& nodes, const LatticeIndex& index) {
   const Lattice& lattice = nodes.lattice();
-  std::array<std::int64_t, 3> n;
-  for (std::size_t a = 0; a < 3; ++a) {
-    n[a] = index[a] - lattice.index_min[a];
-    if (n[a] < 0 || n[a] >= lattice.counts[a]) return false;
-  }
-  return nodes.holds(n[0], n[1], n[2]);
+  const auto& [i, j, k] = lattice.index_min;
+  return whole(lattice).holds(index) && nodes.holds(index[0] - i, index[1] - j, index[2] - k);
 }
 
 bool is_mixed(const Edge& edge, const NodeSet& inside) {
-  std::array<std::int64_t, 3> upper = edge.lower;
+  LatticeIndex upper = edge.lower;
   ++upper[edge.axis];
   return holds(inside, edge.lower) != holds(inside, upper);
 }

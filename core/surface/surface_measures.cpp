@@ -1,7 +1,6 @@
 #include "core/surface/surface_measures.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstddef>
@@ -161,7 +160,7 @@ class MissedSamples {
   // Whether the nearest node is in the set; nothing outside of the lattice.
   [[nodiscard]] std::optional<bool> is_within(const Vec3& p) const {
     const Lattice& lattice = inside_.lattice();
-    std::array<std::int64_t, 3> node;
+    LatticeIndex node;
     for (int axis = 0; axis < 3; ++axis) {
       const auto a = static_cast<std::size_t>(axis);
       const double index = std::round(lattice.steps_from_first(axis, p[axis]));

@@ -43,20 +43,17 @@ class LatticeBits {
 
   void add(const LatticeBlock& block, std::span<const std::uint8_t> flags) {
     std::size_t n = 0;
-    for (std::int64_t z = 0; z < block.counts[2]; ++z) {
-      for (std::int64_t y = 0; y < block.counts[1]; ++y) {
-        for (std::int64_t x = 0; x < block.counts[0]; ++x, ++n) {
-          if (flags[n] != 0) set(block.first[0] + x, block.first[1] + y, block.first[2] + z);
-        }
-      }
-    }
+    for_each_sample(block, [&](const LatticeIndex& index) {
+      if (flags[n++] != 0) set(index);
+    });
   }
 
   [[nodiscard]] std::span<const std::uint8_t> bytes() const { return bytes_; }
 
  private:
-  void set(std::int64_t i, std::int64_t j, std::int64_t k) {
-    const auto& first = lattice_.index_min;
+  void set(const LatticeIndex& index) {
+    const auto& [i, j, k] = index;
+    const LatticeIndex& first = lattice_.index_min;
     const auto bit = static_cast<std::size_t>(
         ((i - first[0]) * lattice_.counts[1] + (j - first[1])) * lattice_.counts[2] + (k - first[2]));
     bytes_[bit / 8] = static_cast<std::uint8_t>(bytes_[bit / 8] | 0x80 >> bit % 8);

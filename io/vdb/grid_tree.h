@@ -100,8 +100,8 @@ void add_layer(Tree& tree, const LeafLayer<Stored>& layer, std::int64_t leaf_z, 
 // The stored values of a block, in OpenVDB's order; what is beside the lattice is background. Returns whether all are
 // known to be the first one, the only one that is set then.
 template <typename Store, typename Stored>
-bool store_block(const SignedBlocks& blocks, const std::array<std::int64_t, 3>& place, const Store& store,
-                 Stored background, Stored* values) {
+bool store_block(const SignedBlocks& blocks, const LatticeIndex& place, const Store& store, Stored background,
+                 Stored* values) {
   const LatticeBlock samples = blocks.distances.samples_of(place);
   const std::span<const double> numbers = blocks.distances.numbers(place);
   if (numbers.empty() && samples.size() == static_cast<std::int64_t>(kLeafVoxels) && is_on_one_side(blocks, samples)) {

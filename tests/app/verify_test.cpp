@@ -102,14 +102,9 @@ TEST(SampleDraw, DependsNotOnTheSlabsOfALattice) {
       for (std::int64_t done = 0; done < lattice.counts[axis]; done += thickness) {
         const LatticeBlock slab = slab_of(whole(lattice), axis, done, thickness);
         std::vector<double> values;  // each is its sample's position in the file of a CSV
-        for (std::int64_t k = 0; k < slab.counts[2]; ++k) {
-          for (std::int64_t j = 0; j < slab.counts[1]; ++j) {
-            for (std::int64_t i = 0; i < slab.counts[0]; ++i) {
-              values.push_back(
-                  static_cast<double>(((slab.first[2] + k) * 10 + slab.first[1] - 7 + j) * 9 + slab.first[0] + 3 + i));
-            }
-          }
-        }
+        for_each_sample(slab, [&](const LatticeIndex& index) {
+          values.push_back(static_cast<double>((index[2] * 10 + index[1] - 7) * 9 + index[0] + 3));
+        });
         draw.offer(lattice, slab, {values});
       }
       const std::vector<DrawnSample> samples = draw.samples();

@@ -384,18 +384,13 @@ void expect_alike(const DistanceEvaluator& distance, const Lattice& lattice, con
   distance.evaluate(lattice, block, band, blocks);
   const std::vector<double> dense = band_of(distance, lattice, block, band);
   std::size_t n = 0;
-  for (std::int64_t k = block.first[2]; k < block.first[2] + block.counts[2]; ++k) {
-    for (std::int64_t j = block.first[1]; j < block.first[1] + block.counts[1]; ++j) {
-      for (std::int64_t i = block.first[0]; i < block.first[0] + block.counts[0]; ++i) {
-        ASSERT_EQ(blocks.at({i, j, k}), dense[n++]) << i << ' ' << j << ' ' << k;
-      }
-    }
-  }
-  for (const Vec3& p : samples_of({{0, 0, 0}, {1, 1, 1}}, blocks.blocks())) {
-    const std::array place{std::int64_t(p.x), std::int64_t(p.y), std::int64_t(p.z)};
+  for_each_sample(block, [&](const LatticeIndex& index) {
+    ASSERT_EQ(blocks.at(index), dense[n++]) << index[0] << ' ' << index[1] << ' ' << index[2];
+  });
+  for_each_sample(blocks.blocks(), [&](const LatticeIndex& place) {
     const std::span<const double> numbers = blocks.numbers(place);
     EXPECT_TRUE(numbers.empty() || std::ranges::min(numbers) < band);
-  }
+  });
 }
 
 TEST(Distance, InBlocksIsThatOfTheSamples) {

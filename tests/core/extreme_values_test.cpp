@@ -203,16 +203,7 @@ std::vector<double> in_slabs(const WindingNumberEvaluator& evaluator, const Latt
     std::vector<double> part(static_cast<std::size_t>(slab.size()));
     evaluator.evaluate(lattice, slab, part);
     const double* value = part.data();
-    for (std::int64_t k = 0; k < slab.counts[2]; ++k) {
-      for (std::int64_t j = 0; j < slab.counts[1]; ++j) {
-        for (std::int64_t i = 0; i < slab.counts[0]; ++i) {
-          std::array<std::int64_t, 3> place{i, j, k};
-          place[a] += begin;
-          values[static_cast<std::size_t>((place[2] * lattice.counts[1] + place[1]) * lattice.counts[0] + place[0])] =
-              *value++;
-        }
-      }
-    }
+    for_each_sample(slab, [&](const LatticeIndex& index) { values[whole(lattice).number_of(index)] = *value++; });
   }
   return values;
 }

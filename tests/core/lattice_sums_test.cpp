@@ -181,19 +181,15 @@ void expect_slabs(const WindingNumberEvaluator& evaluator, const Lattice& lattic
     evaluator.evaluate(lattice, slab, without);
     ASSERT_EQ(with.values, without);
     std::size_t n = 0;
-    for (std::int64_t k = slab.first[2] - lattice.index_min[2]; n < without.size(); ++k) {
-      for (std::int64_t j = 0; j < slab.counts[1]; ++j) {
-        for (std::int64_t i = 0; i < slab.counts[0]; ++i, ++n) {
-          const std::int64_t y = slab.first[1] - lattice.index_min[1] + j, x = slab.first[0] - lattice.index_min[0] + i;
-          const auto at = static_cast<std::size_t>((k * lattice.counts[1] + y) * lattice.counts[0] + x);
-          ASSERT_EQ(with.values[n], expected.values[at]) << i << ' ' << j << ' ' << k;
-          ASSERT_EQ(with.crossings[n], expected.crossings[at]);
-          ASSERT_EQ(with.degenerate[n], expected.degenerate[at]);
-          ASSERT_EQ(with.on_surface[n], expected.on_surface[at]);
-          ASSERT_EQ(with.bounds[n], expected.bounds[at]);
-        }
-      }
-    }
+    for_each_sample(slab, [&](const LatticeIndex& index) {
+      const std::size_t at = whole(lattice).number_of(index);
+      ASSERT_EQ(with.values[n], expected.values[at]) << index[0] << ' ' << index[1] << ' ' << index[2];
+      ASSERT_EQ(with.crossings[n], expected.crossings[at]);
+      ASSERT_EQ(with.degenerate[n], expected.degenerate[at]);
+      ASSERT_EQ(with.on_surface[n], expected.on_surface[at]);
+      ASSERT_EQ(with.bounds[n], expected.bounds[at]);
+      ++n;
+    });
   }
   EXPECT_EQ(tally.degenerate, expected.tally.degenerate);
   EXPECT_EQ(tally.on_surface, expected.tally.on_surface);

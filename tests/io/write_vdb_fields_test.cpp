@@ -40,13 +40,10 @@ double distance_at(const VoxelIndex& at) { return std::clamp(radius_of(at) - 2.0
 template <typename Function>
 auto samples_of(const Lattice& lattice, const Function& function) {
   std::vector<decltype(function(VoxelIndex()))> numbers;
-  for (std::int64_t k = lattice.index_min[2]; k <= lattice.index_max(2); ++k) {
-    for (std::int64_t j = lattice.index_min[1]; j <= lattice.index_max(1); ++j) {
-      for (std::int64_t i = lattice.index_min[0]; i <= lattice.index_max(0); ++i) {
-        numbers.push_back(function(VoxelIndex{static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)}));
-      }
-    }
-  }
+  for_each_sample(whole(lattice), [&](const LatticeIndex& index) {
+    const auto& [i, j, k] = index;
+    numbers.push_back(function(VoxelIndex{static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)}));
+  });
   return numbers;
 }
 
@@ -103,19 +100,14 @@ struct RandomDistances {
   RandomDistances(const Lattice& lattice, std::uint32_t seed, double band) : random(seed) {
     blocks.reset(whole(lattice), band);
     const LatticeBlock places = blocks.blocks();
-    for (std::int64_t n = 0; n < places.size(); ++n) {
-      const std::array<std::int64_t, 3> place{places.first[0] + n % places.counts[0],
-                                              places.first[1] + n / places.counts[0] % places.counts[1],
-                                              places.first[2] + n / places.counts[0] / places.counts[1]};
+    for_each_sample(places, [&](const LatticeIndex& place) {
       side_of_block.push_back(static_cast<int>(random() % 3));
-      if (random() % 3 != 0) continue;
+      if (random() % 3 != 0) return;
       for (double& number : blocks.add(place)) number = std::min(band, 1.5 * band * uniform());
-    }
+    });
     samples_of(lattice, [&](const VoxelIndex& at) {
-      const std::array<std::int64_t, 3> sample{at.x, at.y, at.z};
-      const auto behind = [&](std::size_t axis) { return (sample[axis] >> 3) - places.first[axis]; };
-      const std::int64_t block = (behind(2) * places.counts[1] + behind(1)) * places.counts[0] + behind(0);
-      const int side = side_of_block[static_cast<std::size_t>(block)];
+      const LatticeIndex sample{at.x, at.y, at.z};
+      const int side = side_of_block[places.number_of({at.x >> 3, at.y >> 3, at.z >> 3})];
       inside.push_back(side == 2 ? random() % 2 : static_cast<std::uint8_t>(side));
       numbers.push_back(inside.back() != 0 ? -blocks.at(sample) : blocks.at(sample));
       return 0;

@@ -58,8 +58,7 @@ void expect_holds(const VdbGrid& grid, const VdbField& field) {
       for (std::int64_t x = -1; x <= lattice.counts[0]; ++x) {
         double expected = 0;
         if (inside(x, 0) && inside(y, 1) && inside(z, 2)) {
-          const std::int64_t n = (z * lattice.counts[1] + y) * lattice.counts[0] + x;
-          const double value = field.values[static_cast<std::size_t>(n)];
+          const double value = field.values[LatticeBlock{{}, lattice.counts}.number_of({x, y, z})];
           expected = wide ? value : static_cast<float>(value);
         }
         const VoxelIndex at{static_cast<int>(lattice.index_min[0] + x), static_cast<int>(lattice.index_min[1] + y),

@@ -54,16 +54,7 @@ struct FourDiagnostics {
 template <typename Value>
 std::vector<Value> part(const Lattice& lattice, const std::vector<Value>& values, const LatticeBlock& block) {
   std::vector<Value> result;
-  for (std::int64_t z = 0; z < block.counts[2]; ++z) {
-    for (std::int64_t y = 0; y < block.counts[1]; ++y) {
-      for (std::int64_t x = 0; x < block.counts[0]; ++x) {
-        const std::int64_t i = block.first[0] - lattice.index_min[0] + x;
-        const std::int64_t j = block.first[1] - lattice.index_min[1] + y;
-        const std::int64_t k = block.first[2] - lattice.index_min[2] + z;
-        result.push_back(values[static_cast<std::size_t>((k * lattice.counts[1] + j) * lattice.counts[0] + i)]);
-      }
-    }
-  }
+  for_each_sample(block, [&](const LatticeIndex& index) { result.push_back(values[whole(lattice).number_of(index)]); });
   return result;
 }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
-#include <map>
 #include <optional>
 
 #include "app/process/default_threads.h"
@@ -34,18 +33,13 @@ Normalize parse_normalize(const std::string& text) {
 }
 
 Orient parse_orient(const Values& values) {
-  const std::map<std::string, Orient> ways{
-      {"", Orient::kKeep}, {"keep", Orient::kKeep}, {"flip", Orient::kFlip}, {"auto", Orient::kAuto}};
-  const auto way = ways.find(values.text("--orient"));
-  if (way == ways.end()) invalid("--orient", values.text("--orient"), "keep, flip or auto");
-  return way->second;
+  if (values.text("--orient").empty()) return Orient::kKeep;
+  return values.choice<Orient>("--orient", {{"keep", Orient::kKeep}, {"flip", Orient::kFlip}, {"auto", Orient::kAuto}});
 }
 
-Precision parse_dtype(const std::string& text) {
-  if (text == "f16") return Precision::kHalf;
-  if (text == "f32") return Precision::kSingle;
-  if (text == "f64") return Precision::kDouble;
-  invalid("--dtype", text, "f16, f32 or f64");
+Precision parse_dtype(const Values& values) {
+  return values.choice<Precision>(
+      "--dtype", {{"f16", Precision::kHalf}, {"f32", Precision::kSingle}, {"f64", Precision::kDouble}});
 }
 
 FieldFormat parse_format(const Values& values, const std::string& output, const OutputFormats& formats) {
@@ -143,7 +137,7 @@ OutputFiles parse_output_files(const Values& values) {
 FieldEncoding parse_encoding(const Values& values, const OutputFiles& output, const OutputFormats& formats) {
   FieldEncoding encoding;
   encoding.format = parse_format(values, output.path, formats);
-  if (values.given("--dtype")) encoding.precision = parse_dtype(values.text("--dtype"));
+  if (values.given("--dtype")) encoding.precision = parse_dtype(values);
   encoding.pack_bits = values.given("--pack-bits");
   return encoding;
 }
@@ -171,11 +165,9 @@ RunOptions parse_run(const Values& values) {
     }
   }
   if (values.given("--progress")) {
-    const std::map<std::string, ProgressMode> modes{
-        {"always", ProgressMode::kAlways}, {"never", ProgressMode::kNever}, {"auto", ProgressMode::kAuto}};
-    const auto mode = modes.find(values.text("--progress"));
-    if (mode == modes.end()) invalid("--progress", values.text("--progress"), "always, never or auto");
-    run.progress = mode->second;
+    run.progress = values.choice<ProgressMode>(
+        "--progress",
+        {{"always", ProgressMode::kAlways}, {"never", ProgressMode::kNever}, {"auto", ProgressMode::kAuto}});
   }
   run.quiet = values.given("--quiet");
   run.strict = values.given("--strict");

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -35,28 +34,23 @@ std::vector<Field> parse_fields(const Values& values) {
   return fields;
 }
 
-PartsBy parse_parts_by(const std::string& text) {
-  if (text == "file") return PartsBy::kFile;
-  if (text == "group") return PartsBy::kGroup;
-  if (text == "component") return PartsBy::kComponent;
-  invalid("--parts", text, "file, group or component");
+PartsBy parse_parts_by(const Values& values) {
+  return values.choice<PartsBy>(
+      "--parts", {{"file", PartsBy::kFile}, {"group", PartsBy::kGroup}, {"component", PartsBy::kComponent}});
 }
 
-RayEngine parse_engine(const std::string& text) {
-  if (text == "auto" || text == "scan") return RayEngine::kScan;
-  if (text == "embree") return RayEngine::kEmbree;
-  invalid("--engine", text, "auto, scan or embree");
+RayEngine parse_engine(const Values& values) {
+  return values.choice<RayEngine>(
+      "--engine", {{"auto", RayEngine::kScan}, {"scan", RayEngine::kScan}, {"embree", RayEngine::kEmbree}});
 }
 
-SimdLevel parse_simd(const std::string& text) {
-  const std::map<std::string, SimdLevel> levels{{"auto", SimdLevel::kBest},
-                                                {"sse4", SimdLevel::kSse4},
-                                                {"avx2", SimdLevel::kAvx2},
-                                                {"avx512", SimdLevel::kAvx512}};
-  const auto level = levels.find(text);
-  if (level == levels.end()) invalid("--simd", text, "auto, sse4, avx2 or avx512");
-  if (!is_available(level->second)) invalid("--simd", text, "a level that this processor has");
-  return level->second;
+SimdLevel parse_simd(const Values& values) {
+  const auto level = values.choice<SimdLevel>("--simd", {{"auto", SimdLevel::kBest},
+                                                         {"sse4", SimdLevel::kSse4},
+                                                         {"avx2", SimdLevel::kAvx2},
+                                                         {"avx512", SimdLevel::kAvx512}});
+  if (!is_available(level)) invalid("--simd", values.text("--simd"), "a level that this processor has");
+  return level;
 }
 
 }  // namespace
@@ -133,7 +127,7 @@ Rule parse_rule(const Values& values) {
 
 MeshOptions parse_meshes(const Values& values, const FieldOptions& field) {
   MeshOptions mesh = parse_mesh(values);
-  if (values.given("--parts")) mesh.parts.by = parse_parts_by(values.text("--parts"));
+  if (values.given("--parts")) mesh.parts.by = parse_parts_by(values);
   if (values.given("--priority")) mesh.parts.priority = PartPriority::kFirst;
   if (!mesh.further.empty() && !field.has(Field::kLabel)) {
     throw UsageError("unexpected operand " + mesh.further.front() + ", expected one mesh, or --field label");
@@ -150,8 +144,8 @@ FieldOptions parse_field(const Values& values) {
   if (values.given("--field")) options.fields = parse_fields(values);
   if (values.given("--rule")) options.rule = parse_rule(values);
   if (values.given("--band")) options.band = parse_band(values);
-  if (values.given("--engine")) options.engine = parse_engine(values.text("--engine"));
-  if (values.given("--simd")) options.simd = parse_simd(values.text("--simd"));
+  if (values.given("--engine")) options.engine = parse_engine(values);
+  if (values.given("--simd")) options.simd = parse_simd(values);
   if (values.given("--tolerance")) options.tolerance = parse_tolerance(values);
   options.diagnostics = values.given("--diagnostics");
   constexpr std::int64_t kMaxVerified = 1'000'000'000;

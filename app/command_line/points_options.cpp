@@ -34,10 +34,7 @@ ReadPointsOptions parse_point_columns(const Values& values) {
 std::optional<RawPrecision> parse_raw(const Values& values) {
   if (!values.given("--raw")) return std::nullopt;
   values.exclude("--raw", {"--format", "--columns", "--sample", "--dtype", "--pack-bits"});
-  const std::string text = values.text("--raw");
-  if (text == "f64") return RawPrecision::kDouble;
-  if (text == "f32") return RawPrecision::kSingle;
-  invalid("--raw", text, "f64 or f32");
+  return values.choice<RawPrecision>("--raw", {{"f64", RawPrecision::kDouble}, {"f32", RawPrecision::kSingle}});
 }
 
 OutputFormats output_formats(const PointsCommand& command) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "app/process/usage_error.h"
+#include "io/files/enumerated.h"
 
 namespace raycone {
 
@@ -29,6 +30,10 @@ class Values {
   // Throw UsageError for any other value.
   [[nodiscard]] double positive(const std::string& name, const std::string& unit = "") const;
   [[nodiscard]] std::int64_t integer(const std::string& name, std::int64_t least, std::int64_t most) const;
+  // What the word stands for, one of these.
+  template <class Meaning>
+  [[nodiscard]] Meaning choice(const std::string& name,
+                               std::initializer_list<std::pair<const char*, Meaning>> words) const;
 
   // Throws UsageError if `name` is given together with one of `others`.
   void exclude(const std::string& name, std::initializer_list<const char*> others) const;
@@ -51,6 +56,16 @@ class InvalidValue : public UsageError {
 
 // Throws InvalidValue.
 [[noreturn]] void invalid(const std::string& name, const std::string& text, const std::string& expected);
+
+template <class Meaning>
+Meaning Values::choice(const std::string& name, std::initializer_list<std::pair<const char*, Meaning>> words) const {
+  std::vector<std::string> expected;
+  for (const auto& [word, meaning] : words) {
+    if (text(name) == word) return meaning;
+    expected.emplace_back(word);
+  }
+  invalid(name, text(name), enumerated(expected, " or "));
+}
 
 // Where to read on, to be put behind a message; an empty `command` is raycone itself.
 [[nodiscard]] std::string help_hint(const std::string& command);

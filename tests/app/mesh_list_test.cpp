@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "io/files/file_error.h"
+#include "tests/support/error_text.h"
 
 namespace raycone::test {
 namespace {
@@ -35,12 +36,8 @@ TEST(MeshList, SeparatedByNulHoldsAnyName) {
 
 TEST(MeshList, WithNulInItsLinesIsRefused) {
   const std::string text("# a comment\0\na.stl\0b.stl\n", 25);
-  try {
-    (void)paths_in_list(text, "list", PathEnd::kLineFeed, "; -0 helps");
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()), "list:2: holds a NUL, expected a path of text; -0 helps");
-  }
+  EXPECT_EQ(error_text<InputError>([&] { return paths_in_list(text, "list", PathEnd::kLineFeed, "; -0 helps"); }),
+            "list:2: holds a NUL, expected a path of text; -0 helps");
 }
 
 }  // namespace

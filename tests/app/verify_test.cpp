@@ -13,6 +13,7 @@
 #include "core/data/lattice_slabs.h"
 #include "core/machine/threads.h"
 #include "core/mesh/weld.h"
+#include "tests/support/error_text.h"
 #include "tests/support/shapes.h"
 
 namespace raycone::test {
@@ -56,12 +57,7 @@ TriangleMesh random_mesh(int triangles) {
 
 template <class Verify>
 std::string error_of(const Verify& verify_something) {
-  try {
-    (void)verify_something();
-  } catch (const VerificationError& error) {
-    return error.what();
-  }
-  return {};
+  return error_text<VerificationError>(verify_something);
 }
 
 // Of a run over `other` that is taken for one over `mesh`.

@@ -14,6 +14,7 @@
 #include "core/data/triangle_mesh.h"
 #include "io/files/file_error.h"
 #include "io/mesh/read_mesh.h"
+#include "tests/support/error_text.h"
 #include "tests/support/glb.h"
 
 namespace raycone {
@@ -121,12 +122,7 @@ ParsedMesh parse(const std::string& bytes) {
 }
 
 std::string error_of(const std::string& bytes) {
-  try {
-    static_cast<void>(parse(bytes));
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
+  return test::error_text<InputError>([&] { return parse(bytes); });
 }
 
 // Sorted, each from its smallest corner on: the encoder reorders faces and turns their corners.

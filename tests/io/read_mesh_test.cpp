@@ -15,6 +15,7 @@
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
 #include "io/mesh/mesh_signature.h"
+#include "tests/support/error_text.h"
 #include "tests/support/temporary_directory.h"
 
 namespace raycone {
@@ -38,15 +39,11 @@ std::string write(const TemporaryDirectory& directory, const std::string& name, 
 
 // The message without the path that it starts with; empty where the file loads.
 std::string error_of(const std::string& path, const ReadMeshOptions& options = {}) {
-  try {
-    static_cast<void>(read_mesh(path, options));
-  } catch (const InputError& error) {
-    const std::string message = error.what();
-    EXPECT_TRUE(message.starts_with(path)) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    return message.substr(std::min(path.size(), message.size()));
-  }
-  return {};
+  const std::string message = test::error_text<InputError>([&] { return read_mesh(path, options); });
+  if (message.empty()) return {};
+  EXPECT_TRUE(message.starts_with(path)) << message;
+  EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+  return message.substr(std::min(path.size(), message.size()));
 }
 
 std::vector<Vec3> vertices(const std::string& path, const ReadMeshOptions& options = {}) {

@@ -17,6 +17,7 @@
 #include "io/files/file_error.h"
 #include "io/points/point_readers.h"
 #include "io/points/read_points.h"
+#include "tests/support/error_text.h"
 #include "tests/support/temporary_directory.h"
 
 namespace raycone {
@@ -47,13 +48,8 @@ class ReadPoints : public testing::Test {
 
   // The message of the InputError, without the directory of the file.
   std::string error_of(const std::string& bytes, const ReadPointsOptions& options = {}) {
-    try {
-      static_cast<void>(read(bytes, options));
-    } catch (const InputError& error) {
-      const std::string message = error.what();
-      return message.starts_with(path_) ? message.substr(path_.size() - 3) : message;
-    }
-    return {};
+    const std::string message = error_text<InputError>([&] { return read(bytes, options); });
+    return message.starts_with(path_) ? message.substr(path_.size() - 3) : message;
   }
 
   TemporaryDirectory directory_;
@@ -140,13 +136,8 @@ TEST_F(ReadPoints, NamesOfColumnsMayHaveWordsThatSayLittle) {
 TEST_F(ReadPoints, PlyInAPipeIsTold) {
   std::ofstream(path_) << "ply\nformat ascii 1.0\n";
   const auto reader = read_text_points(std::make_unique<InputBuffer>(path_), {});
-  try {
-    read_all(*reader);
-    FAIL();
-  } catch (const InputError& error) {
-    EXPECT_EQ(std::string(error.what()),
-              path_ + ":1: found 'ply', expected text; PLY is read from files by their names");
-  }
+  EXPECT_EQ(error_text<InputError>([&] { return read_all(*reader); }),
+            path_ + ":1: found 'ply', expected text; PLY is read from files by their names");
 }
 
 // A title is no table of no points.

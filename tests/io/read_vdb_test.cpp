@@ -12,6 +12,7 @@
 #include "core/data/placed_lattice.h"
 #include "io/files/file_error.h"
 #include "tests/io/vdb_field.h"
+#include "tests/support/error_text.h"
 #include "tests/support/temporary_directory.h"
 #include "tests/support/text_files.h"
 #include "tests/support/vdb_files.h"
@@ -32,13 +33,7 @@ VdbGridToWrite named_grid(const std::string& name, const VdbTransform& transform
 }
 
 std::string input_error_of(const std::string& path, const std::string& name) {
-  try {
-    (void)read_vdb_lattice(path, name);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no InputError";
-  return {};
+  return test::error_text<InputError>([&] { return read_vdb_lattice(path, name); });
 }
 
 void expect_same(const PlacedLattice& actual, const PlacedLattice& expected) {

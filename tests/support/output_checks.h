@@ -10,6 +10,7 @@
 #include "core/data/lattice_slabs.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
+#include "tests/support/error_text.h"
 #include "tests/support/run_command.h"
 
 namespace raycone::test {
@@ -17,13 +18,9 @@ namespace raycone::test {
 // What the OutputError of `action` says; fails where there is none.
 template <typename Action>
 std::string output_error_of(const Action& action) {
-  try {
-    action();
-  } catch (const OutputError& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no OutputError";
-  return {};
+  const std::string text = error_text<OutputError>(action);
+  EXPECT_NE(text, "") << "no OutputError";
+  return text;
 }
 
 // A value and its diagnostics, as the application describes them.

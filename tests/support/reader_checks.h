@@ -12,6 +12,7 @@
 
 #include "io/files/file_error.h"
 #include "io/mesh/read_mesh.h"
+#include "tests/support/error_text.h"
 
 namespace raycone::test {
 
@@ -22,12 +23,7 @@ inline ParsedMesh parse(MeshReader reader, std::string_view bytes) { return read
 
 // The message of the InputError that the reader throws; empty where it throws none.
 inline std::string error_of(MeshReader reader, std::string_view bytes) {
-  try {
-    parse(reader, bytes);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
+  return error_text<InputError>([&] { return parse(reader, bytes); });
 }
 
 // Reads every proper prefix of `bytes`, each in an allocation of its exact size, so that the address sanitizer sees a

@@ -9,6 +9,7 @@
 #include "app/process/usage_error.h"
 #include "io/files/file_error.h"
 #include "tests/app/meshes.h"
+#include "tests/support/error_text.h"
 #include "tests/support/temporary_directory.h"
 
 namespace raycone::test {
@@ -38,12 +39,7 @@ class BatchMeshes : public testing::Test {
 
   // What the UsageError of the search says.
   [[nodiscard]] static std::string error_of(const std::vector<std::string>& operands) {
-    try {
-      (void)find(operands);
-    } catch (const UsageError& error) {
-      return error.what();
-    }
-    return {};
+    return error_text<UsageError>([&] { return find(operands); });
   }
 
   [[nodiscard]] std::string root_name() const { return dir_.path().filename().string(); }

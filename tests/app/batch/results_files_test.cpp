@@ -14,6 +14,7 @@
 
 #include "io/files/file_error.h"
 #include "tests/app/meshes.h"
+#include "tests/support/error_text.h"
 #include "tests/support/temporary_directory.h"
 
 namespace raycone::test {
@@ -96,14 +97,8 @@ TEST_F(ResultsFilesTest, WithAStrayQuotationMarkAreLeftAsTheyAre) {
   const std::string damaged = std::string(whole).insert(whole.find("\nb,") + 2, "\"");
   write_text(dir_ / "results.csv", damaged);
   const auto expect_refused = [&](const std::function<void()>& action) {
-    try {
-      action();
-      ADD_FAILURE();
-    } catch (const InputError& error) {
-      EXPECT_TRUE(
-          std::string(error.what()).ends_with("results.csv:3: a quotation mark without its end, expected a row"))
-          << error.what();
-    }
+    const std::string error = error_text<InputError>(action);
+    EXPECT_TRUE(error.ends_with("results.csv:3: a quotation mark without its end, expected a row")) << error;
     EXPECT_EQ(results(), damaged);
   };
   const ResultsFiles others(dir_.path().string(), std::nullopt);

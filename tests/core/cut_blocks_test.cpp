@@ -5,17 +5,16 @@
 #include <algorithm>
 #include <vector>
 
+#include "tests/support/lattice_rows.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
 
-LatticeRows unit_rows(std::size_t nx, std::size_t ny, std::size_t nz) {
-  LatticeRows rows;
-  for (std::size_t i = 0; i < nx; ++i) rows.xs.push_back(static_cast<double>(i) / static_cast<double>(nx));
-  for (std::size_t i = 0; i < ny; ++i) rows.ys.push_back(static_cast<double>(i) / static_cast<double>(ny));
-  for (std::size_t i = 0; i < nz; ++i) rows.zs.push_back(static_cast<double>(i) / static_cast<double>(nz));
-  return rows;
+// In the unit cube.
+LatticeRows unit_rows(std::int64_t nx, std::int64_t ny, std::int64_t nz) {
+  const auto step = [](std::int64_t count) { return 1.0 / static_cast<double>(count); };
+  return test::rows_of({{0, 0, 0}, {step(nx), step(ny), step(nz)}, {0, 0, 0}, {nx, ny, nz}});
 }
 
 // How often each sample is in a box.

@@ -8,20 +8,14 @@
 #include <vector>
 
 #include "core/distance/triangle_distance.h"
+#include "tests/support/lattice_rows.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
 
-std::vector<double> evenly(double first, double step, int count) {
-  std::vector<double> values;
-  for (int n = 0; n < count; ++n) values.push_back(first + n * step);
-  return values;
-}
-
-LatticeRows rows_of(int nx, int ny, int nz, double step) {
-  const double per_unit = 1 / step;
-  return {evenly(-0.1, step, nx), evenly(0.02, step, ny), evenly(-0.05, step, nz), {per_unit, per_unit, per_unit}};
+LatticeRows rows_of(std::int64_t nx, std::int64_t ny, std::int64_t nz, double step) {
+  return test::rows_of({{-0.1, 0.02, -0.05}, {step, step, step}, {0, 0, 0}, {nx, ny, nz}});
 }
 
 // What a search for each sample gives, as far as it is in the band.
@@ -101,8 +95,7 @@ TEST(DistanceBand, BetweenANeedleAndATriangle) {
   const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0.5, 1e-4, 0}, {0, -1, 2.03e-4}, {1, -1, 2.03e-4}, {0.5, 1, 2.03e-4}},
                           {{0, 1, 2}, {3, 4, 5}}};
   const double step = 1e-7;
-  const LatticeRows rows{
-      evenly(0.5, step, 8), evenly(4e-5, step, 8), evenly(1e-4, step, 8), {1 / step, 1 / step, 1 / step}};
+  const LatticeRows rows = test::rows_of({{0.5, 4e-5, 1e-4}, {step, step, step}, {0, 0, 0}, {8, 8, 8}});
   expect_right(mesh, rows, 1.0);
 }
 

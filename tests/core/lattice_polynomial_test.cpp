@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/support/differences.h"
+#include "tests/support/lattice_rows.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
@@ -80,8 +81,8 @@ TEST(AxisNodes, BoundWhatUnderflows) {
 
 // ---- Grids of nodes ----------------------------------------------------------------------------------------------
 
-LatticeRows rows_of(std::size_t nx, std::size_t ny, std::size_t nz) {
-  return {coordinates(nx, 0.01), coordinates(ny, 0.013), coordinates(nz, 0.02), {}};
+LatticeRows rows_of(std::int64_t nx, std::int64_t ny, std::int64_t nz) {
+  return test::rows_of({{0.3, 0.3, 0.3}, {0.01, 0.013, 0.02}, {0, 0, 0}, {nx, ny, nz}});
 }
 
 // 1 / |p - pole|: derivatives of order k along any direction are at most k! / |p - pole|^(k+1).

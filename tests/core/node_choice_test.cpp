@@ -5,17 +5,14 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/support/lattice_rows.h"
+
 namespace raycone {
 namespace {
 
 const SampleBox kBox{{0, 0, 0}, {24, 12, 12}};
 
-LatticeRows unit_rows() {
-  LatticeRows rows;
-  for (int i = 0; i < 24; ++i) rows.xs.push_back(i);
-  rows.ys = rows.zs = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
-  return rows;
-}
+LatticeRows unit_rows() { return test::rows_of({{0, 0, 0}, {1, 1, 1}, {0, 0, 0}, {24, 12, 12}}); }
 
 // Those of 1 / distance at this distance.
 std::vector<double> derivatives_at(double distance) {

@@ -11,23 +11,13 @@
 #include "core/boundary/solid_angles.h"
 #include "core/far/lattice_blocks.h"
 #include "tests/support/expansion_error.h"
+#include "tests/support/lattice_rows.h"
 #include "tests/support/shapes.h"
 
 namespace raycone {
 namespace {
 
 using test::Random;
-
-LatticeRows rows_of(std::size_t nx, std::size_t ny, std::size_t nz, const Vec3& origin, const Vec3& spacing) {
-  LatticeRows rows;
-  const auto fill = [](std::vector<double>& along, std::size_t count, double from, double step) {
-    for (std::size_t i = 0; i < count; ++i) along.push_back(from + static_cast<double>(i) * step);
-  };
-  fill(rows.xs, nx, origin.x, spacing.x);
-  fill(rows.ys, ny, origin.y, spacing.y);
-  fill(rows.zs, nz, origin.z, spacing.z);
-  return rows;
-}
 
 double direct_sum(std::span<const SolidTriangle> triangles, const Vec3& q) {
   SampleTile tile;
@@ -109,7 +99,7 @@ TriangleMesh scraps() {
 }
 
 TEST(RoughSumsTest, AreOffByNoMoreThanTheySay) {
-  const LatticeRows rows = rows_of(96, 80, 88, {-0.6, -0.5, -0.55}, {0.0125, 0.0125, 0.0125});
+  const LatticeRows rows = test::rows_of({{-0.6, -0.5, -0.55}, {0.0125, 0.0125, 0.0125}, {0, 0, 0}, {96, 80, 88}});
   for (const double each : {0.1, 4e-3, 1e-4, 1e-7}) {
     const Seen seen = look_at_boxes(scraps(), rows, each, 60);
     EXPECT_GT(seen.closest, 1e-4) << each << ": bounds that nothing comes near are of no use";
@@ -120,9 +110,9 @@ TEST(RoughSumsTest, AreOffByNoMoreThanTheySay) {
 
 TEST(RoughSumsTest, OfLatticesThatAreFlatOrStretched) {
   const TriangleMesh mesh = scraps();
-  for (const LatticeRows& rows : {rows_of(60, 60, 1, {-0.7, -0.7, 0.05}, {0.025, 0.025, 1}),
-                                  rows_of(1, 50, 60, {0.1, -0.6, -0.7}, {1, 0.025, 0.025}),
-                                  rows_of(30, 90, 20, {-0.6, -0.5, -0.6}, {0.04, 0.01, 0.06})}) {
+  for (const LatticeRows& rows : {test::rows_of({{-0.7, -0.7, 0.05}, {0.025, 0.025, 1}, {0, 0, 0}, {60, 60, 1}}),
+                                  test::rows_of({{0.1, -0.6, -0.7}, {1, 0.025, 0.025}, {0, 0, 0}, {1, 50, 60}}),
+                                  test::rows_of({{-0.6, -0.5, -0.6}, {0.04, 0.01, 0.06}, {0, 0, 0}, {30, 90, 20}})}) {
     (void)look_at_boxes(mesh, rows, 4e-3, 60);
   }
 }
@@ -130,7 +120,8 @@ TEST(RoughSumsTest, OfLatticesThatAreFlatOrStretched) {
 // Samples on vertices, edges and faces of a mesh, and level with them.
 TEST(RoughSumsTest, OfLatticesThatAreFullOfTies) {
   TriangleMesh box = test::moved(test::open_box(), {0.5, 0.5, 0.5}, {0, 0, 0});
-  (void)look_at_boxes(box, rows_of(49, 49, 49, {-0.75, -0.75, -0.75}, {0.03125, 0.03125, 0.03125}), 4e-3, 120);
+  (void)look_at_boxes(box, test::rows_of({{-0.75, -0.75, -0.75}, {0.03125, 0.03125, 0.03125}, {0, 0, 0}, {49, 49, 49}}),
+                      4e-3, 120);
 }
 
 // From farther and farther away: interpolation, and leaving out, take over from sums at each sample.
@@ -140,7 +131,7 @@ Seen look_from_afar(const TriangleMesh& mesh) {
   Seen seen;
   for (int step = 0; step < 60; ++step) {
     const double away = 0.005 * std::pow(1.07, step);
-    const LatticeRows rows = rows_of(8, 8, 8, {-0.02, -0.02, away}, {0.006, 0.006, 0.006});
+    const LatticeRows rows = test::rows_of({{-0.02, -0.02, away}, {0.006, 0.006, 0.006}, {0, 0, 0}, {8, 8, 8}});
     RoughSums sums(blocks, rows);
     for (double each = 1e-2; each > 1e-7; each /= 4) {
       compare(triangles, rows, sums, sums.look_at({{0, 0, 0}, {8, 8, 8}}, each, nullptr), seen);

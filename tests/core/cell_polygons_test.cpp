@@ -42,11 +42,6 @@ TriangleMesh turned(TriangleMesh mesh, Random& random) {
   return mesh;
 }
 
-TriangleMesh octahedron() {
-  return {{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
-          {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
-}
-
 // What the steps before contour() make of a mesh.
 struct Cells {
   TriangleMesh mesh;
@@ -107,7 +102,7 @@ TEST(CellPolygons, CloseUpToTheSameSolid) {
   Random random(11);
   std::size_t with_apex = 0;
   for (int round = 0; round < 40; ++round) {
-    const TriangleMesh shape = round % 2 == 0 ? octahedron() : test::box_mesh({0, 0, 0}, {1.0, 0.7, 0.4});
+    const TriangleMesh shape = round % 2 == 0 ? test::octahedron() : test::box_mesh({0, 0, 0}, {1.0, 0.7, 0.4});
     const TriangleMesh mesh = turned(shape, random);
     const Cells cells(mesh, lattice_around(mesh, uniform(random, 0.04, 0.2)));
     const ContouredSurface whole = cells.contoured(ContourCells::kTetrahedra);
@@ -129,7 +124,7 @@ TEST(CellPolygons, HaveThePlanesOfTheirSources) {
   const DefaultFloatingPoint guard;
   Random random(12);
   for (int round = 0; round < 10; ++round) {
-    const TriangleMesh mesh = turned(octahedron(), random);
+    const TriangleMesh mesh = turned(test::octahedron(), random);
     const double h = uniform(random, 0.05, 0.2);
     const Cells cells(mesh, lattice_around(mesh, h));
     const ContouredSurface whole = cells.contoured(ContourCells::kTetrahedra);
@@ -185,26 +180,10 @@ TEST(CellPolygons, AreFoundHoweverAPlanePartsACell) {
   EXPECT_GT(of_several, 100);
 }
 
-// Convex, from z = 0 to 1.
-TriangleMesh prism(const std::vector<std::pair<double, double>>& outline) {
-  const auto count = static_cast<std::uint32_t>(outline.size());
-  TriangleMesh mesh;
-  for (const auto& [x, y] : outline) mesh.vertices.push_back({x, y, 0});
-  for (const auto& [x, y] : outline) mesh.vertices.push_back({x, y, 1});
-  for (std::uint32_t n = 0; n < count; ++n) {
-    const std::uint32_t next = (n + 1) % count;
-    mesh.triangles.push_back({n, next, count + n});
-    mesh.triangles.push_back({next, count + next, count + n});
-    if (n < 2) continue;
-    mesh.triangles.push_back({0, n, n - 1});
-    mesh.triangles.push_back({count, count + n - 1, count + n});
-  }
-  return mesh;
-}
-
 // A box with its four edges along z cut off.
 TriangleMesh chamfered_box(double cut) {
-  return prism({{cut, 0}, {1 - cut, 0}, {1, cut}, {1, 1 - cut}, {1 - cut, 1}, {cut, 1}, {0, 1 - cut}, {0, cut}});
+  return test::prism({{cut, 0}, {1 - cut, 0}, {1, cut}, {1, 1 - cut}, {1 - cut, 1}, {cut, 1}, {0, 1 - cut}, {0, cut}},
+                     1.0);
 }
 
 // Of a surface, what is not in the planes of its sources.
@@ -249,7 +228,7 @@ TEST(CellPolygons, AreInThePlanesBesideFineCreases) {
   const DefaultFloatingPoint guard;
   Random random(18);
   for (int round = 0; round < 6; ++round) {
-    const TriangleMesh mesh = turned(prism({{0, 0}, {1, 0}, {1, 1}, {0.5, 1.00001}, {0, 1}}), random);
+    const TriangleMesh mesh = turned(test::prism({{0, 0}, {1, 0}, {1, 1}, {0.5, 1.00001}, {0, 1}}, 1.0), random);
     const Lattice lattice = lattice_around(mesh, uniform(random, 0.04, 0.06));
     const Cells one(mesh, lattice);
     const Cells several(mesh, lattice, PointsOfFaces::kSections);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -71,24 +70,6 @@ std::vector<Vec3> sorted_vertices(const TriangleMesh& mesh) {
 }
 
 TriangleMesh box_at(double x, double size) { return box_mesh({x, 0.3, 0.4}, {x + size, 0.3 + size, 0.4 + size}); }
-
-TriangleMesh prism(const std::vector<std::array<double, 2>>& corners, double height) {
-  const auto n = static_cast<std::uint32_t>(corners.size());
-  TriangleMesh mesh;
-  for (const double z : {0.0, height}) {
-    for (const auto& [x, y] : corners) mesh.vertices.push_back({x, y, z});
-  }
-  for (std::uint32_t i = 1; i + 1 < n; ++i) {
-    mesh.triangles.push_back({0, i + 1, i});
-    mesh.triangles.push_back({n, n + i, n + i + 1});
-  }
-  for (std::uint32_t i = 0; i < n; ++i) {
-    const std::uint32_t next = (i + 1) % n;
-    mesh.triangles.push_back({i, next, n + next});
-    mesh.triangles.push_back({i, n + next, n + i});
-  }
-  return mesh;
-}
 
 TriangleMesh finned(double thickness, double length) {
   return prism({{0.0, 0.0}, {1.0 + length, 0.0}, {1.0 + length, thickness}, {1.0, thickness}, {1.0, 1.0}, {0.0, 1.0}},

@@ -1,7 +1,6 @@
 // Meshes that may be surfaces themselves, and what tests ask of these surfaces.
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -30,9 +29,6 @@ std::vector<Vec3> sorted_vertices(const TriangleMesh& mesh);
 
 // A cube of that size, with its lowest corner at (x, 0.3, 0.4).
 TriangleMesh box_at(double x, double size);
-
-// An upright prism over a polygon that is star-shaped from its first corner, counter-clockwise.
-TriangleMesh prism(const std::vector<std::array<double, 2>>& corners, double height);
 
 // A block of 1 by 1 by 1, with a fin of this thickness and length.
 TriangleMesh finned(double thickness, double length);

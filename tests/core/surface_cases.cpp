@@ -149,18 +149,13 @@ TriangleMesh bitten_sphere(int rings, double height, double depth, double times,
 }
 
 TriangleMesh cylinder() {
-  constexpr std::uint32_t kSides = 24;
-  TriangleMesh mesh;
-  for (std::uint32_t side = 0; side < kSides; ++side) {
+  constexpr int kSides = 24;
+  std::vector<std::array<double, 2>> corners;
+  for (int side = 0; side < kSides; ++side) {
     const double angle = 2.0 * std::numbers::pi * side / kSides;
-    for (const double z : {0.0, 1.3}) mesh.vertices.push_back({std::cos(angle), std::sin(angle), z});
+    corners.push_back({std::cos(angle), std::sin(angle)});
   }
-  for (std::uint32_t side = 0; side < kSides; ++side) {
-    const std::uint32_t a = 2 * side, b = 2 * ((side + 1) % kSides);
-    mesh.triangles.insert(mesh.triangles.end(), {{a, b, b + 1}, {a, b + 1, a + 1}});
-    if (side > 0 && side + 1 < kSides) mesh.triangles.insert(mesh.triangles.end(), {{0, b, a}, {1, a + 1, b + 1}});
-  }
-  return mesh;
+  return prism(corners, 1.3);
 }
 
 }  // namespace raycone::test

@@ -461,18 +461,12 @@ TEST(Surface, InLevelPlanesThroughNodesHasLargeFaces) {
   EXPECT_LT(surface.mesh.triangles.size(), 40U);
 }
 
-TriangleMesh octahedron(double radius) {
-  TriangleMesh mesh{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
-                    {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
-  for (Vec3& p : mesh.vertices) p = radius * p;
-  return mesh;
-}
-
 // Oblique planes through nodes, which rounding has on either side of them.
 TEST(Surface, OfPlanesThroughNodesHasTheFacesOfTheMesh) {
   const TriangleMesh tetrahedron{{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}},
                                  {{0, 1, 2}, {0, 3, 1}, {0, 2, 3}, {1, 3, 2}}};
-  for (const TriangleMesh& mesh : {octahedron(1.0), octahedron(0.1), octahedron(0.001), tetrahedron}) {
+  for (const TriangleMesh& mesh :
+       {test::octahedron(1.0), test::octahedron(0.1), test::octahedron(0.001), tetrahedron}) {
     for (const std::int64_t samples : {24, 44, 74, 80, 84}) {
       const auto [surface, lattice] = surface_of(mesh, samples + 2);
       EXPECT_EQ(surface.mesh.triangles.size(), mesh.triangles.size()) << mesh.vertices[0].x << " at " << samples;
@@ -485,7 +479,7 @@ TEST(Surface, OfPlanesThroughNodesHasTheFacesOfTheMesh) {
 TEST(Surface, OfPlanesThroughNodesIsWhereEdgesOfTheLatticeLeaveTheMesh) {
   const std::int64_t samples = 80;
   const double h = 2.0 / (samples - 1), x = -1 + 72 * h, top = 0.9375, rim = 0.002;
-  TriangleMesh mesh = octahedron(1.0);
+  TriangleMesh mesh = test::octahedron(1.0);
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   const double low = 0.7, high = 0.95;
   for (const double z : {low, top}) {

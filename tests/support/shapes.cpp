@@ -59,6 +59,30 @@ TriangleMesh open_box() {
   return weld(mesh, {});
 }
 
+TriangleMesh octahedron(double radius) {
+  const double r = radius;
+  return {{{r, 0, 0}, {-r, 0, 0}, {0, r, 0}, {0, -r, 0}, {0, 0, r}, {0, 0, -r}},
+          {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}}};
+}
+
+TriangleMesh prism(const std::vector<std::array<double, 2>>& corners, double height) {
+  const auto n = static_cast<std::uint32_t>(corners.size());
+  TriangleMesh mesh;
+  for (const double z : {0.0, height}) {
+    for (const auto& [x, y] : corners) mesh.vertices.push_back({x, y, z});
+  }
+  for (std::uint32_t i = 1; i + 1 < n; ++i) {
+    mesh.triangles.push_back({0, i + 1, i});
+    mesh.triangles.push_back({n, n + i, n + i + 1});
+  }
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t next = (i + 1) % n;
+    mesh.triangles.push_back({i, next, n + next});
+    mesh.triangles.push_back({i, n + next, n + i});
+  }
+  return mesh;
+}
+
 TriangleMesh sphere(int rings) {
   const int slices = 2 * rings;
   const auto at = [&](int ring, int slice) -> Vec3 {

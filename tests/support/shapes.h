@@ -23,6 +23,10 @@ void add_triangle(TriangleMesh& mesh, const Vec3& a, const Vec3& b, const Vec3& 
 [[nodiscard]] TriangleMesh box_mesh(const Vec3& lower, const Vec3& upper);
 // The unit cube without its top (z = 1).
 [[nodiscard]] TriangleMesh open_box();
+// With its six corners on the axes, so far from the origin; closed, outward.
+[[nodiscard]] TriangleMesh octahedron(double radius = 1.0);
+// Upright from z = 0 on, over a polygon that is star-shaped from its first corner, counter-clockwise; closed, outward.
+[[nodiscard]] TriangleMesh prism(const std::vector<std::array<double, 2>>& corners, double height);
 // A closed sphere of radius 1 about the origin: `rings` bands of 2 * `rings` slices, outward.
 [[nodiscard]] TriangleMesh sphere(int rings);
 // sphere() with holes all over: of every so many faces, the first is missing.

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "tests/app/meshes.h"
+#include "tests/support/bytes.h"
 #include "tests/support/run_command.h"
 #include "tests/support/shapes.h"
 #include "tests/support/temporary_directory.h"
@@ -56,20 +57,15 @@ std::string as_stl(const TriangleMesh& mesh) {
   return text.str();
 }
 
-template <typename T>
-void append(std::string& bytes, T value) {
-  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
-
 // A .gltf whose buffer is `bin`, a file beside it.
 std::string as_gltf(const TriangleMesh& mesh, const std::string& bin_path) {
   std::string bin;
   for (const Vec3& v : mesh.vertices) {
-    for (int axis = 0; axis < 3; ++axis) append(bin, static_cast<float>(v[axis]));
+    for (int axis = 0; axis < 3; ++axis) bin += bytes_of({static_cast<float>(v[axis])});
   }
   const std::size_t indices = bin.size();
   for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t i : t) append(bin, i);
+    for (const std::uint32_t i : t) bin += bytes_of({i});
   }
   write_text(bin_path, bin);
   const auto view = [](std::size_t offset, std::size_t length) {

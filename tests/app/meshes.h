@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "tests/support/bytes.h"
 #include "tests/support/text_files.h"
 
 namespace raycone::test {
@@ -28,6 +29,17 @@ f 4 1 5 8
 
 // The triangle (0, 0, 0), (1, 0, 0), (0, 1, 0): flat along z, open.
 inline const char* const kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+// A triangle as glTF, whose corners are in the file `uri`: triangle_corners().
+inline std::string gltf_of(const std::string& uri) {
+  return R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"scene":0,"scenes":[{"nodes":[0]}],
+    "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,1]}],
+    "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":")" +
+         uri + "\"}]}";
+}
+
+inline std::string triangle_corners(float size) { return bytes_of<float>({0, 0, 0, size, 0, 0, 0, size, 0}); }
 
 // Unconnected triangles in the unit cube: each has three exterior edges.
 inline std::string triangle_soup(int triangles) {

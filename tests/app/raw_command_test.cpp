@@ -1,24 +1,17 @@
 // `raycone points --raw`. Black box: the real executable.
 #include <gtest/gtest.h>
 
-#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "tests/app/meshes.h"
+#include "tests/support/bytes.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
 
 namespace raycone::test {
 namespace {
-
-template <typename Number>
-std::string bytes_of(const std::vector<Number>& numbers) {
-  std::string bytes(numbers.size() * sizeof(Number), '\0');
-  std::memcpy(bytes.data(), numbers.data(), bytes.size());
-  return bytes;
-}
 
 class RawOption : public testing::Test {
  protected:

@@ -14,6 +14,7 @@
 #include "core/data/triangle_mesh.h"
 #include "io/files/file_error.h"
 #include "io/mesh/read_mesh.h"
+#include "tests/support/bytes.h"
 #include "tests/support/error_text.h"
 #include "tests/support/glb.h"
 
@@ -201,8 +202,7 @@ TEST(ReadGltfDraco, UncompressedDataAreTakenWhereTheExtensionIsNotRequired) {
   std::string draco = compressed(mesh, {});
   while (draco.size() % 4 != 0) draco += '\0';
   const std::size_t first = 4 * positions.size(), second = 4 * corners.size();
-  const std::string more = std::string(reinterpret_cast<const char*>(positions.data()), first) +
-                           std::string(reinterpret_cast<const char*>(corners.data()), second);
+  const std::string more = test::bytes_of(positions) + test::bytes_of(corners);
   Asset asset = asset_of(other);
   asset.required = "";
   asset.indices = R"(,"indices":2)";

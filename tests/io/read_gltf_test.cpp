@@ -19,6 +19,7 @@
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
 #include "io/mesh/read_mesh.h"
+#include "tests/support/bytes.h"
 #include "tests/support/error_text.h"
 #include "tests/support/glb.h"
 #include "tests/support/temporary_directory.h"
@@ -26,14 +27,10 @@
 namespace raycone {
 namespace {
 
+using test::bytes_of;
 using test::glb;
 using test::little_endian;
 using test::TemporaryDirectory;
-
-template <class Number>
-std::string bytes_of(const std::vector<Number>& numbers) {
-  return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number)};
-}
 
 std::string base64(const std::string& bytes) {
   constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";

@@ -4,7 +4,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <fstream>
 #include <limits>
@@ -17,12 +16,14 @@
 #include "io/files/file_error.h"
 #include "io/points/point_readers.h"
 #include "io/points/read_points.h"
+#include "tests/support/bytes.h"
 #include "tests/support/error_text.h"
 #include "tests/support/temporary_directory.h"
 
 namespace raycone {
 namespace {
 
+using test::bytes_of;
 using test::TemporaryDirectory;
 
 std::vector<Vec3> read_all(PointReader& reader, std::size_t max = 1000) {
@@ -48,7 +49,7 @@ class ReadPoints : public testing::Test {
 
   // The message of the InputError, without the directory of the file.
   std::string error_of(const std::string& bytes, const ReadPointsOptions& options = {}) {
-    const std::string message = error_text<InputError>([&] { return read(bytes, options); });
+    const std::string message = test::error_text<InputError>([&] { return read(bytes, options); });
     return message.starts_with(path_) ? message.substr(path_.size() - 3) : message;
   }
 
@@ -136,7 +137,7 @@ TEST_F(ReadPoints, NamesOfColumnsMayHaveWordsThatSayLittle) {
 TEST_F(ReadPoints, PlyInAPipeIsTold) {
   std::ofstream(path_) << "ply\nformat ascii 1.0\n";
   const auto reader = read_text_points(std::make_unique<InputBuffer>(path_), {});
-  EXPECT_EQ(error_text<InputError>([&] { return read_all(*reader); }),
+  EXPECT_EQ(test::error_text<InputError>([&] { return read_all(*reader); }),
             path_ + ":1: found 'ply', expected text; PLY is read from files by their names");
 }
 
@@ -429,18 +430,6 @@ std::string npy(const std::string& type, const std::string& order, const std::st
   std::string length;
   for (int i = 0; i < (version == 1 ? 2 : 4); ++i) length += static_cast<char>(header.size() >> (8 * i) & 0xFF);
   return std::string("\x93NUMPY") + version + '\0' + length + header + data;
-}
-
-template <class Number>
-std::string bytes_of(std::vector<Number> numbers, bool big_endian = false) {
-  std::string bytes(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(Number));
-  if (big_endian) {
-    for (std::size_t i = 0; i < bytes.size(); i += sizeof(Number)) {
-      std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i),
-                   bytes.begin() + static_cast<std::ptrdiff_t>(i + sizeof(Number)));
-    }
-  }
-  return bytes;
 }
 
 const std::vector<Vec3> kWhole{{1, 2, 3}, {4, 5, 6}};

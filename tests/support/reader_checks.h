@@ -5,13 +5,13 @@
 
 #include <cstdint>
 #include <cstring>
-#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
 
 #include "io/files/file_error.h"
 #include "io/mesh/read_mesh.h"
+#include "tests/support/bytes.h"
 #include "tests/support/error_text.h"
 
 namespace raycone::test {
@@ -36,18 +36,6 @@ inline int count_loading_prefixes(MeshReader reader, std::string_view bytes) {
     loading += error_of(reader, {copy.get(), size}).empty() ? 1 : 0;
   }
   return loading;
-}
-
-// Bytes of numbers, in the byte order of this machine or the other one.
-template <class Number>
-std::string bytes_of(std::initializer_list<Number> numbers, bool reversed = false) {
-  std::string bytes;
-  for (const Number number : numbers) {
-    std::string one(sizeof number, '\0');
-    std::memcpy(one.data(), &number, sizeof number);
-    bytes += reversed ? std::string(one.rbegin(), one.rend()) : one;
-  }
-  return bytes;
 }
 
 }  // namespace raycone::test

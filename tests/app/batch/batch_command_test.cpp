@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "tests/app/batch/batch_fixture.h"
+#include "tests/support/bytes.h"
 
 namespace raycone::test {
 namespace {
@@ -377,8 +378,7 @@ constexpr const char* kBox = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{
     "bufferViews":[{"buffer":0,"byteLength":72}],"buffers":[{"uri":"box.bin","byteLength":72}]})";
 
 std::string box_buffer(float height) {
-  const float corners[18] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, height, 1, 1, 1, 0, 1, 0};
-  return {reinterpret_cast<const char*>(corners), sizeof corners};
+  return bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, height, 1, 1, 1, 0, 1, 0});
 }
 
 TEST_F(Batch, BuffersOfGltfCountAsPartOfTheMesh) {

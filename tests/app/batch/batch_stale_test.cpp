@@ -18,20 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
 
-// A triangle whose corners are in `uri`.
-std::string gltf_of(const std::string& uri) {
-  return R"({"asset":{"version":"2.0"},"nodes":[{"mesh":0}],"scene":0,"scenes":[{"nodes":[0]}],
-    "meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
-    "accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,1]}],
-    "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":")" +
-         uri + "\"}]}";
-}
-
-std::string corners(float size) {
-  const float numbers[9] = {0, 0, 0, size, 0, 0, 0, size, 0};
-  return {reinterpret_cast<const char*>(numbers), sizeof numbers};
-}
-
 std::string cube_of(char size) {
   std::string text = kCube;
   for (std::size_t at = text.find('f'); at-- > 0;) {
@@ -74,7 +60,7 @@ class BatchStale : public Batch {
 TEST_F(BatchStale, BuffersAreThoseBesideTheMeshOfToday) {
   for (const auto& [version, size] : {std::pair("v1", 1.0F), {"v2", 2.0F}}) {
     put(std::string(version) + "/box.gltf", gltf_of("box.bin"));
-    put(std::string(version) + "/box.bin", corners(size));
+    put(std::string(version) + "/box.bin", triangle_corners(size));
   }
   const std::string first = meshes_ + "/v1", second = meshes_ + "/v2";
   ASSERT_EQ(run_on({first}).status, 0);
@@ -87,7 +73,7 @@ TEST_F(BatchStale, BuffersAreThoseBesideTheMeshOfToday) {
 
 TEST_F(BatchStale, WorkingDirectoriesDoNotMatter) {
   put("box.gltf", gltf_of("sub/box.bin"));
-  put("sub/box.bin", corners(1));
+  put("sub/box.bin", triangle_corners(1));
   const auto run_there = [this](const std::string& more) {
     std::string line = "cd '" + meshes_ + "' && exec";
     for (const std::string& word : raycone_command(words({"box.gltf"}, out_))) line += " '" + word + "'";
@@ -96,7 +82,7 @@ TEST_F(BatchStale, WorkingDirectoriesDoNotMatter) {
   ASSERT_EQ(run_there("").status, 0);
   EXPECT_EQ(run_there(" --dry-run").out, "");
   EXPECT_EQ(planned({meshes_}), "");
-  put("sub/box.bin", corners(2));
+  put("sub/box.bin", triangle_corners(2));
   EXPECT_NE(planned({meshes_}), "");
 }
 
@@ -274,11 +260,11 @@ TEST_F(BatchStale, MeshesThatTheSystemDoesNotReadAreTriedAgain) {
 
 TEST_F(BatchStale, OutputsThatWouldReplaceABufferAreTriedAgain) {
   put("box.gltf", gltf_of("box.csv"));
-  put("box.csv", corners(1));
+  put("box.csv", triangle_corners(1));
   const std::vector<std::string> all = words({meshes_}, meshes_);
   EXPECT_EQ(run_raycone(all).status, 5);
   EXPECT_EQ(statuses(rows_in(meshes_ + "/results.csv")), (Statuses{{"box.gltf", "unwritable"}}));
-  EXPECT_EQ(read_text(meshes_ + "/box.csv"), corners(1));
+  EXPECT_EQ(read_text(meshes_ + "/box.csv"), triangle_corners(1));
 }
 
 TEST_F(BatchStale, RowsThatLostTheirOriginBeatOlderOnesOfShards) {
@@ -354,7 +340,7 @@ TEST_F(BatchStale, TablesOfBatchesBelowAreNotReplaced) {
 
 TEST_F(BatchStale, AFileThatIsCalledMinusIsNoStandardInput) {
   put("a.gltf", gltf_of("-"));
-  put("-", corners(1));
+  put("-", triangle_corners(1));
   write_text(meshes_ + "/list", "-\na.gltf\n");
   std::string line = "cd '" + meshes_ + "' && exec";
   for (const std::string& word : raycone_command(words({"@list"}, out_))) line += " '" + word + "'";

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/app/csv_numbers.h"
 #include "tests/app/meshes.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
@@ -112,22 +113,17 @@ struct Compared {
 Compared compare_grids_with_csv(const std::string& mesh, const std::string& path) {
   const std::vector<std::string> more{"--resolution", "12", "--diagnostics"};
   EXPECT_EQ(run_raycone(with_more({"lattice", mesh, "-o", path}, more)).status, 0);
-  std::istringstream csv(run_raycone(with_more({"lattice", mesh, "-o", "-"}, more)).out);
+  const CsvNumbers csv = csv_numbers(run_raycone(with_more({"lattice", mesh, "-o", "-"}, more)).out);
   const VdbGridPtr crossings = read_vdb_grid(path, "crossings");
   const VdbGridPtr degenerate = read_vdb_grid(path, "degenerate");
   const VdbGridPtr on_surface = read_vdb_grid(path, "on_surface", VdbType::kBool);
   const VdbGridPtr error_bound = read_vdb_grid(path, "error_bound");
   Compared compared;
-  std::string line;
-  std::getline(csv, line);
-  for (; std::getline(csv, line); ++compared.rows) {
-    std::replace(line.begin(), line.end(), ',', ' ');
-    std::istringstream row(line);
-    VoxelIndex at;
-    double x, y, z, w, crossings_in_csv, degenerate_in_csv, on_surface_in_csv, bound;
-    row >> at.x >> at.y >> at.z >> x >> y >> z >> w >> crossings_in_csv >> degenerate_in_csv >> on_surface_in_csv >>
-        bound;
-    EXPECT_FALSE(row.fail()) << line;
+  for (const std::vector<double>& row : csv.rows) {
+    const VoxelIndex at = voxel_of(row);
+    const double crossings_in_csv = row.at(7), degenerate_in_csv = row.at(8), on_surface_in_csv = row.at(9),
+                 bound = row.at(10);
+    ++compared.rows;
     EXPECT_EQ(crossings->value(at), crossings_in_csv);
     EXPECT_EQ(degenerate->value(at), degenerate_in_csv);
     EXPECT_EQ(on_surface->value(at), on_surface_in_csv != 0 ? 1 : 0);

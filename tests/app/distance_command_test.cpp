@@ -4,12 +4,12 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/exact/direct_distance.h"
 #include "io/mesh/read_mesh.h"
+#include "tests/app/csv_numbers.h"
 #include "tests/app/meshes.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/run_command.h"
@@ -20,14 +20,6 @@
 namespace raycone::test {
 namespace {
 
-std::string obj_of(const TriangleMesh& mesh) {
-  std::ostringstream obj;
-  obj.precision(17);
-  for (const Vec3& p : mesh.vertices) obj << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
-  for (const Triangle& t : mesh.triangles) obj << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
-  return obj.str();
-}
-
 VdbGridPtr surface_of(const std::string& path) { return read_vdb_grid(path, "surface"); }
 
 struct Sample {
@@ -37,18 +29,11 @@ struct Sample {
 };
 
 std::vector<Sample> samples_of(const std::string& csv) {
-  std::istringstream lines(csv);
-  std::string line;
-  std::getline(lines, line);
-  EXPECT_EQ(line, "i,j,k,x,y,z,w,sdf");
+  const CsvNumbers numbers = csv_numbers(csv);
+  EXPECT_EQ(numbers.names, (std::vector<std::string>{"i", "j", "k", "x", "y", "z", "w", "sdf"}));
   std::vector<Sample> samples;
-  while (std::getline(lines, line)) {
-    std::ranges::replace(line, ',', ' ');
-    std::istringstream row(line);
-    Sample s;
-    row >> s.index.x >> s.index.y >> s.index.z >> s.position.x >> s.position.y >> s.position.z >> s.w >> s.distance;
-    EXPECT_FALSE(row.fail()) << line;
-    samples.push_back(s);
+  for (const std::vector<double>& row : numbers.rows) {
+    samples.push_back({voxel_of(row), {row[3], row[4], row[5]}, row[6], row[7]});
   }
   return samples;
 }

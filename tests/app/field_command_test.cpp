@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/app/csv_numbers.h"
 #include "tests/app/meshes.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/run_command.h"
@@ -17,24 +18,6 @@
 
 namespace raycone::test {
 namespace {
-
-// A CSV by its columns.
-std::map<std::string, std::vector<double>> columns_of(const std::string& csv) {
-  std::istringstream lines(csv);
-  std::string line, name, number;
-  std::getline(lines, line);
-  std::vector<std::string> names;
-  for (std::istringstream header(line); std::getline(header, name, ',');) names.push_back(name);
-  std::map<std::string, std::vector<double>> columns;
-  while (std::getline(lines, line)) {
-    std::istringstream row(line);
-    for (const std::string& column : names) {
-      std::getline(row, number, ',');
-      columns[column].push_back(std::stod(number));
-    }
-  }
-  return columns;
-}
 
 class FieldOption : public testing::Test {
  protected:
@@ -65,13 +48,12 @@ TEST_F(FieldOption, EveryRuleSaysWhatTheWindingNumberSays) {
   for (const auto& [rule, holds] : rules) {
     std::ptrdiff_t insides = 0, samples = 0;
     for (const std::string& mesh : {soup_, cubes_}) {
-      const auto columns = columns_of(run(mesh, "-", {"--field", "inside,winding", "--rule", rule}).out);
-      ASSERT_GT(columns.at("w").size(), 2000U);
-      for (std::size_t n = 0; n < columns.at("w").size(); ++n) {
-        ASSERT_EQ(columns.at("inside")[n], holds(columns.at("w")[n]) ? 1 : 0) << rule << ' ' << columns.at("w")[n];
-      }
-      insides += std::ranges::count(columns.at("inside"), 1.0);
-      samples += std::ssize(columns.at("w"));
+      const CsvNumbers csv = csv_numbers(run(mesh, "-", {"--field", "inside,winding", "--rule", rule}).out);
+      const std::vector<double> inside = csv.column("inside"), w = csv.column("w");
+      ASSERT_GT(w.size(), 2000U);
+      for (std::size_t n = 0; n < w.size(); ++n) ASSERT_EQ(inside[n], holds(w[n]) ? 1 : 0) << rule << ' ' << w[n];
+      insides += std::ranges::count(inside, 1.0);
+      samples += std::ssize(w);
     }
     EXPECT_GT(insides, 0) << rule;
     EXPECT_LT(insides, samples) << rule;
@@ -89,17 +71,17 @@ TEST_F(FieldOption, ColumnsComeInTheOrderAskedFor) {
 }
 
 TEST_F(FieldOption, DensityIsClamped) {
-  const auto columns = columns_of(run(cubes_, "-", {"--field", "density,winding"}).out);
-  for (std::size_t n = 0; n < columns.at("w").size(); ++n) {
-    ASSERT_EQ(columns.at("density")[n], std::clamp(columns.at("w")[n], 0.0, 1.0));
-  }
-  EXPECT_GT(std::ranges::max(columns.at("w")), 1.5) << "or nothing is clamped";
+  const CsvNumbers csv = csv_numbers(run(cubes_, "-", {"--field", "density,winding"}).out);
+  const std::vector<double> density = csv.column("density"), w = csv.column("w");
+  for (std::size_t n = 0; n < w.size(); ++n) ASSERT_EQ(density[n], std::clamp(w[n], 0.0, 1.0));
+  EXPECT_GT(std::ranges::max(w), 1.5) << "or nothing is clamped";
 }
 
 TEST_F(FieldOption, VdbHoldsAGridPerField) {
   const std::vector<std::string> options{"--field", "inside,winding,density", "--rule", "abs=.3", "--diagnostics"};
   ASSERT_EQ(run(soup_, dir_ / "out.vdb", options).status, 0);
-  const auto columns = columns_of(run(soup_, "-", options).out);
+  const CsvNumbers csv = csv_numbers(run(soup_, "-", options).out);
+  const std::vector<double> insides = csv.column("inside"), densities = csv.column("density"), w = csv.column("w");
   ASSERT_EQ(read_vdb_grids(dir_ / "out.vdb").size(), 7U);
   const VdbGridPtr inside = read_vdb_grid(dir_ / "out.vdb", "inside", VdbType::kBool);
   const VdbGridPtr density = read_vdb_grid(dir_ / "out.vdb", "density");
@@ -108,13 +90,12 @@ TEST_F(FieldOption, VdbHoldsAGridPerField) {
   for (const VdbGridPtr& grid : {inside, density, winding}) EXPECT_EQ(grid->text("raycone_rule"), "abs=0.3");
   EXPECT_EQ(density->grid_class(), VdbClass::kFogVolume);
   EXPECT_EQ(winding->grid_class(), VdbClass::kUnknown);
-  for (std::size_t n = 0; n < columns.at("w").size(); ++n) {
-    const VoxelIndex at{static_cast<int>(columns.at("i")[n]), static_cast<int>(columns.at("j")[n]),
-                        static_cast<int>(columns.at("k")[n])};
-    ASSERT_EQ(inside->value(at), columns.at("inside")[n] == 1 ? 1 : 0);
-    ASSERT_EQ(inside->is_active(at), columns.at("inside")[n] == 1);
-    ASSERT_EQ(density->value(at), static_cast<float>(columns.at("density")[n]));
-    ASSERT_EQ(winding->value(at), static_cast<float>(columns.at("w")[n]));
+  for (std::size_t n = 0; n < w.size(); ++n) {
+    const VoxelIndex at = voxel_of(csv.rows[n]);
+    ASSERT_EQ(inside->value(at), insides[n] == 1 ? 1 : 0);
+    ASSERT_EQ(inside->is_active(at), insides[n] == 1);
+    ASSERT_EQ(density->value(at), static_cast<float>(densities[n]));
+    ASSERT_EQ(winding->value(at), static_cast<float>(w[n]));
   }
 }
 

@@ -2,10 +2,12 @@
 // executable.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
+#include "tests/app/csv_numbers.h"
 #include "tests/app/meshes.h"
 #include "tests/support/bytes.h"
 #include "tests/support/run_command.h"
@@ -16,13 +18,6 @@ namespace raycone::test {
 namespace {
 
 // Coordinates are small integers: every format holds them exactly.
-
-std::string as_obj(const TriangleMesh& mesh) {
-  std::ostringstream text;
-  for (const Vec3& v : mesh.vertices) text << "v " << v.x << ' ' << v.y << ' ' << v.z << '\n';
-  for (const Triangle& t : mesh.triangles) text << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
-  return text.str();
-}
 
 std::string vertices_and_faces(const TriangleMesh& mesh) {
   std::ostringstream text;
@@ -99,36 +94,24 @@ std::string values_of(const std::string& mesh) {
   return result.out;
 }
 
-// Of i,j,k,x,y,z,w,crossings,degenerate,on_surface,error_bound.
-int rows_on_surface(const std::string& csv) {
-  std::istringstream lines(csv);
-  std::string line;
-  int count = 0;
-  while (std::getline(lines, line)) {
-    const std::string until_bound = line.substr(0, line.rfind(','));
-    count += until_bound.ends_with(",1");
-  }
-  return count;
-}
-
 TEST(Formats, GiveTheSameValuesAndFlagsOnTheSurface) {
   const TemporaryDirectory dir;
   Random random(5);
   TriangleMesh mesh = random_cells(random, 4);
   mesh.triangles.resize(mesh.triangles.size() - 7);  // open
-  write_text(dir / "mesh.obj", as_obj(mesh));
-  write_text(dir / "shuffled.obj", as_obj(shuffled(mesh, random)));
+  write_text(dir / "mesh.obj", obj_of(mesh));
+  write_text(dir / "shuffled.obj", obj_of(shuffled(mesh, random)));
   write_text(dir / "mesh.off", as_off(mesh));
   write_text(dir / "mesh.ply", as_ply(mesh));
   write_text(dir / "mesh.stl", as_stl(mesh));
   write_text(dir / "mesh.gltf", as_gltf(mesh, dir / "mesh.bin"));
   const std::string expected = values_of(dir / "mesh.obj");
-  EXPECT_GT(rows_on_surface(expected), 100);
+  EXPECT_GT(std::ranges::count(csv_numbers(expected).column("on_surface"), 1.0), 100);
   for (const char* const file : {"shuffled.obj", "mesh.off", "mesh.ply", "mesh.stl", "mesh.gltf"}) {
     EXPECT_TRUE(values_of(dir / file) == expected) << file;
   }
   mesh.vertices[mesh.triangles[0][0]].x += 0.125;  // the comparison would notice another mesh
-  write_text(dir / "other.obj", as_obj(mesh));
+  write_text(dir / "other.obj", obj_of(mesh));
   EXPECT_FALSE(values_of(dir / "other.obj") == expected);
 }
 

@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cstring>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/app/csv_numbers.h"
 #include "tests/app/meshes.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
@@ -26,18 +26,6 @@ std::string cup_along(std::size_t axis) {
   return text + "f 1 2 4 3\nf 1 5 6 2\nf 3 4 8 7\nf 1 3 7 5\nf 2 6 8 4\n";
 }
 
-std::vector<std::vector<double>> rows_of(const std::string& csv) {
-  std::istringstream lines(csv);
-  std::string line, number;
-  std::getline(lines, line);
-  std::vector<std::vector<double>> rows;
-  while (std::getline(lines, line)) {
-    rows.emplace_back();
-    for (std::istringstream row(line); std::getline(row, number, ',');) rows.back().push_back(std::stod(number));
-  }
-  return rows;
-}
-
 class OpeningOfACup : public testing::TestWithParam<std::size_t> {
  protected:
   OpeningOfACup() { write_text(cup_, cup_along(GetParam())); }
@@ -51,7 +39,7 @@ TEST_P(OpeningOfACup, IsInside) {
                                             "--field", "winding,inside,sdf", "--verify", "50", "--quiet"});
   ASSERT_EQ(result.status, 0) << result.err;
   int within = 0, around = 0;
-  for (const std::vector<double>& row : rows_of(result.out)) {
+  for (const std::vector<double>& row : csv_numbers(result.out).rows) {
     ASSERT_EQ(row.size(), 9U);
     const std::size_t axis = GetParam();
     if (row[3 + axis] != 1) continue;

@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "core/data/triangle_mesh.h"
 #include "tests/support/bytes.h"
 #include "tests/support/text_files.h"
 
@@ -26,6 +27,15 @@ f 2 3 7 6
 f 3 4 8 7
 f 4 1 5 8
 )";
+
+// With all digits.
+inline std::string obj_of(const TriangleMesh& mesh) {
+  std::ostringstream obj;
+  obj.precision(17);
+  for (const Vec3& p : mesh.vertices) obj << "v " << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  for (const Triangle& t : mesh.triangles) obj << "f " << t[0] + 1 << ' ' << t[1] + 1 << ' ' << t[2] + 1 << '\n';
+  return obj.str();
+}
 
 // The triangle (0, 0, 0), (1, 0, 0), (0, 1, 0): flat along z, open.
 inline const char* const kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/app/csv_numbers.h"
 #include "tests/app/meshes.h"
 #include "tests/support/output_checks.h"
 #include "tests/support/run_command.h"
@@ -92,15 +92,8 @@ TEST_F(SampleOption, ValuesAreThoseOfThePoints) {
 
 TEST_F(SampleOption, TheBoxIsPaddedOrAnother) {
   const auto lies_in = [&](const std::vector<std::string>& more, double lower, double upper) {
-    std::istringstream lines(sample(with_more({"uniform=3000", "--field", "winding"}, more)).out);
-    std::string line;
-    std::getline(lines, line);
-    double least = 1e9, most = -1e9;
-    while (std::getline(lines, line)) {
-      const double x = std::stod(line);
-      least = std::min(least, x);
-      most = std::max(most, x);
-    }
+    const CommandResult drawn = sample(with_more({"uniform=3000", "--field", "winding"}, more));
+    const auto [least, most] = std::ranges::minmax(csv_numbers(drawn.out).column("x"));
     const double side = upper - lower;  // within a hundredth of the ends, but for one case in 1e13
     return lower <= least && least < lower + side / 100 && upper - side / 100 < most && most <= upper;
   };

@@ -2,11 +2,10 @@
 // CSV.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
+#include "tests/app/csv_numbers.h"
 #include "tests/app/meshes.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
@@ -15,49 +14,27 @@
 namespace raycone::test {
 namespace {
 
-struct CsvSample {
-  VoxelIndex index;
-  Vec3 position;
-  double value;
-};
-
-std::vector<CsvSample> read_csv(const std::string& path) {
-  std::ifstream file(path);
-  std::string line;
-  std::getline(file, line);
-  EXPECT_EQ(line, "i,j,k,x,y,z,w");
-  std::vector<CsvSample> samples;
-  while (std::getline(file, line)) {
-    std::istringstream row(line);
-    CsvSample s;
-    char comma = 0;
-    row >> s.index.x >> comma >> s.index.y >> comma >> s.index.z;
-    row >> comma >> s.position[0] >> comma >> s.position[1] >> comma >> s.position[2] >> comma >> s.value;
-    EXPECT_FALSE(row.fail()) << line;
-    samples.push_back(s);
-  }
-  return samples;
-}
-
 void compare(const std::string& mesh, const std::vector<std::string>& options) {
   const TemporaryDirectory dir;
   const std::string path = dir / "mesh.obj";
-  std::ofstream(path) << mesh;
+  write_text(path, mesh);
   for (const std::string name : {"out.csv", "out.vdb"}) {
     ASSERT_EQ(run_raycone(with_more({"lattice", path, "-o", dir / name}, options)).status, 0);
   }
-  const std::vector<CsvSample> samples = read_csv(dir / "out.csv");
+  const CsvNumbers csv = csv_numbers(read_text(dir / "out.csv"));
+  EXPECT_EQ(csv.names, (std::vector<std::string>{"i", "j", "k", "x", "y", "z", "w"}));
   const VdbGridPtr grid = read_vdb_grid(dir / "out.vdb", "winding");
   ASSERT_TRUE(grid);
-  ASSERT_GT(samples.size(), 100U);
+  ASSERT_GT(csv.rows.size(), 100U);
   std::uint64_t active = 0;
-  for (const CsvSample& s : samples) {
-    EXPECT_EQ(grid->value(s.index), static_cast<float>(s.value));
-    EXPECT_EQ(grid->is_active(s.index), static_cast<float>(s.value) != grid->background());
-    active += grid->is_active(s.index);
-    const Vec3 world = grid->position(s.index);
-    for (int axis = 0; axis < 3; ++axis)
-      EXPECT_NEAR(world[axis], s.position[axis], 1e-12);  // some roundings of values below 10
+  for (const std::vector<double>& row : csv.rows) {
+    const VoxelIndex at = voxel_of(row);
+    const auto w = static_cast<float>(row[6]);
+    EXPECT_EQ(grid->value(at), w);
+    EXPECT_EQ(grid->is_active(at), w != grid->background());
+    active += grid->is_active(at);
+    const Vec3 world = grid->position(at), expected{row[3], row[4], row[5]};
+    EXPECT_LE(largest_coordinate(world - expected), 1e-12);  // some roundings of values below 10
   }
   EXPECT_EQ(grid->active_voxel_count(), active);  // nothing beside the samples
 }

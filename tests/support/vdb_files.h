@@ -21,6 +21,11 @@ inline std::ostream& operator<<(std::ostream& out, const VoxelIndex& at) {
   return out << '[' << at.x << ", " << at.y << ", " << at.z << ']';
 }
 
+// Of a row of CSV, which begins with the indices of its sample.
+inline VoxelIndex voxel_of(const std::vector<double>& row) {
+  return {static_cast<int>(row.at(0)), static_cast<int>(row.at(1)), static_cast<int>(row.at(2))};
+}
+
 enum class VdbType { kBool, kFloat, kDouble };
 
 enum class VdbClass { kUnknown, kFogVolume, kLevelSet, kOther };

@@ -1,9 +1,9 @@
 #include "tests/core/surface_cases.h"
-#include "tests/support/values.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -18,8 +18,20 @@
 #include "core/contour/vertex_places.h"
 #include "core/distance/distance.h"
 #include "core/mesh/used_part.h"
+#include "tests/support/values.h"
 
 namespace raycone::test {
+namespace {
+
+// Between 0 and 1. Often as near to an end as is allowed, where that is asked for.
+double random_place(Random& random, bool to_margin) {
+  const double extremes = to_margin ? uniform(random, 0.0, 4.0) : 4.0;
+  if (extremes < 1.0) return kSurfaceMargins.inner;
+  if (extremes < 2.0) return 1.0 - kSurfaceMargins.inner;
+  return uniform(random, 0.01, 0.99);
+}
+
+}  // namespace
 
 Lattice lattice_off_origin(std::int64_t side, double spacing) {
   return {{-0.3, 0.2, 0.1}, {spacing, spacing, spacing}, {-1, 2, 0}, {side, side, side}};
@@ -36,13 +48,6 @@ NodeSet nodes_where(const Lattice& lattice,
     }
   }
   return nodes;
-}
-
-double random_place(Random& random, bool to_margin) {
-  const double extremes = to_margin ? uniform(random, 0.0, 4.0) : 4.0;
-  if (extremes < 1.0) return kSurfaceMargins.inner;
-  if (extremes < 2.0) return 1.0 - kSurfaceMargins.inner;
-  return uniform(random, 0.01, 0.99);
 }
 
 std::vector<EdgePoint> random_edge_points(const SurfaceCells& cells, Random& random, bool to_margin) {

@@ -24,9 +24,6 @@ Lattice lattice_off_origin(std::int64_t side, double spacing = 1.0);
 NodeSet nodes_where(const Lattice& lattice,
                     const std::function<bool(std::int64_t, std::int64_t, std::int64_t)>& inside);
 
-// Between 0 and 1. Often as near to an end as is allowed, where that is asked for.
-double random_place(Random& random, bool to_margin);
-
 // On all mixed edges.
 std::vector<EdgePoint> random_edge_points(const SurfaceCells& cells, Random& random, bool to_margin);
 

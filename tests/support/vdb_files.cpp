@@ -170,11 +170,6 @@ VdbTransform& VdbTransform::rotate_about_x(double radians) {
   return *this;
 }
 
-VdbTransform& VdbTransform::shear_x_along_y(double by) {
-  transform_of(*this).postShear(by, openvdb::math::X_AXIS, openvdb::math::Y_AXIS);
-  return *this;
-}
-
 void write_vdb_grids(const std::string& path, const std::vector<VdbGridToWrite>& grids, VdbStatistics statistics) {
   openvdb::io::File file(path);
   file.setGridStatsMetadataEnabled(statistics == VdbStatistics::kWith);

@@ -86,7 +86,6 @@ class VdbTransform {
   VdbTransform& translate(const Vec3& by);
   VdbTransform& scale(const Vec3& by);
   VdbTransform& rotate_about_x(double radians);
-  VdbTransform& shear_x_along_y(double by);
 
   // An openvdb::math::Transform.
   [[nodiscard]] const std::shared_ptr<void>& held() const { return held_; }

@@ -35,11 +35,8 @@ using test::volume_of;
 // Without faces in the middle of the box, at the end of a side, or of a sphere's top.
 TriangleMesh without(TriangleMesh mesh, const Box& box) {
   std::erase_if(mesh.triangles, [&](const Triangle& t) {
-    const Vec3 middle = (1.0 / 3.0) * (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (middle[axis] < box.lower[axis] || middle[axis] > box.upper[axis]) return false;
-    }
-    return true;
+    const auto [a, b, c] = corners_of(mesh, t);
+    return contains(box, (1.0 / 3.0) * (a + b + c));
   });
   return mesh;
 }

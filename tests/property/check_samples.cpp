@@ -22,27 +22,11 @@ TriangleMesh with_area(const TriangleMesh& mesh) {
   return result;
 }
 
-bool in_box(const Box& box, const Vec3& p) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!(p[axis] >= box.lower[axis] && p[axis] <= box.upper[axis])) return false;
-  }
-  return true;
-}
-
-double largest_coordinate(const TriangleMesh& mesh) {
-  const Box box = bounding_box(mesh);
-  double largest = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    largest = std::max({largest, std::abs(box.lower[axis]), std::abs(box.upper[axis])});
-  }
-  return largest;
-}
-
 // On a triangle of which it is in the box, up to three products and two sums per coordinate.
 bool lies_on(const TriangleMesh& mesh, double tolerance, const Vec3& p) {
   return std::ranges::any_of(mesh.triangles, [&](const Triangle& t) {
     const TriangleMesh one{mesh.vertices, {t}};
-    return in_box(bounding_box(one), p) && quad_distance(one, p) <= tolerance;
+    return contains(bounding_box(one), p) && quad_distance(one, p) <= tolerance;
   });
 }
 
@@ -69,14 +53,15 @@ std::optional<Failure> check_samples(const TriangleMesh& mesh, std::uint64_t see
   if (surface.triangles.empty()) return std::nullopt;
   constexpr double kNear = 1e300;  // to overflow
   if (!sampler.is_finite()) {
-    if (largest_coordinate(surface) < kNear) return Failure{{}, "said to overflow where nothing is that large"};
+    if (largest_coordinate(bounding_box(surface)) < kNear)
+      return Failure{{}, "said to overflow where nothing is that large"};
     return std::nullopt;
   }
   std::vector<Vec3> points(2 * count);
   sampler.draw(0, points);
-  const double tolerance = 8 * 0x1p-53 * largest_coordinate(surface) + 0x1p-1073;
+  const double tolerance = 8 * 0x1p-53 * largest_coordinate(bounding_box(surface)) + 0x1p-1073;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!in_box(box, points[i])) return Failure{points[i], "drawn out of the box"};
+    if (!contains(box, points[i])) return Failure{points[i], "drawn out of the box"};
     if (i < count && !lies_on(surface, tolerance, points[i])) return Failure{points[i], "drawn off the surface"};
   }
   return std::nullopt;

@@ -17,14 +17,6 @@
 namespace raycone::test {
 namespace {
 
-double largest_coordinate(const TriangleMesh& mesh) {
-  double largest = 0;
-  for (const Triangle& t : mesh.triangles) {
-    for (const std::uint32_t v : t) largest = std::max(largest, largest_coordinate(mesh.vertices[v]));
-  }
-  return largest;
-}
-
 std::string text(double x) {
   char digits[32];
   std::snprintf(digits, sizeof digits, "%.17g", x);
@@ -52,7 +44,7 @@ struct Scaled {
 
   [[nodiscard]] bool fits() const {
     const auto near = [](const std::vector<double>& xs) { return xs.front() >= -0x1p55 && xs.back() <= 0x1p55; };
-    const double largest = largest_coordinate(mesh);
+    const double largest = largest_coordinate(bounding_box(mesh));
     return largest >= 0.5 && largest <= 1 && near(rows.xs) && near(rows.ys) && near(rows.zs);
   }
 };
@@ -98,7 +90,7 @@ std::optional<Failure> check_distances(const TriangleMesh& mesh, const std::vect
   for (std::size_t n = 0; n < points.size(); ++n) {
     const Quad exact = direct_distance(mesh, points[n]);
     const Quad difference = distances[n] > exact ? distances[n] - exact : exact - distances[n];
-    const Quad largest = std::max(largest_coordinate(mesh), largest_coordinate(points[n]));
+    const Quad largest = std::max(largest_coordinate(bounding_box(mesh)), largest_coordinate(points[n]));
     // What is not a normal number is rounded to a multiple of the least one.
     const Quad allowed = std::max(Quad(1e-12) * exact, 4 * Quad(0x1p-53) * largest);
     ++counts.points;

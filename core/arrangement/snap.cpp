@@ -130,8 +130,7 @@ class Neighbours {
 class NearInside {
  public:
   NearInside(const TriangleMesh& mesh, const Triangle& t, double distance)
-      : corners_(corners_of(mesh, t)),
-        area_(cross(corners_[1] - corners_[0], corners_[2] - corners_[0])) {
+      : corners_(corners_of(mesh, t)), area_(cross(corners_[1] - corners_[0], corners_[2] - corners_[0])) {
     const double size = safe_norm(area_);
     off_plane_ = size > 0.0 ? distance * size : -1.0;
     for (std::size_t n = 0; n < 3; ++n) off_side_[n] = distance * size * safe_norm(corners_[(n + 1) % 3] - corners_[n]);

@@ -56,7 +56,9 @@ def commands(mesh, resolution, points, out):
     yield "diagnostics", ["lattice", mesh, "-o", out + ".csv", "--field", "inside", "--diagnostics", "--resolution", "12"]
     if "sheets" not in mesh:  # they wind around all of a lattice, and so have no surface in it
         yield "surface", ["surface", mesh, "-o", out + ".ply", "--resolution", "48", "--orient", "auto"]
-    yield "solid", ["lattice", mesh, "-o", out + ".npy", "--field", "solid", "--resolution", "48", "--orient", "auto"]
+    # What is inside of turned sheets ends a little beyond them.
+    yield "solid", ["lattice", mesh, "-o", out + ".npy", "--field", "solid", "--resolution", "48", "--orient", "auto",
+                    "--padding", "20%"]
     yield "points", ["points", mesh, points, "-o", out + ".npy"]
     yield "sample", ["points", mesh, "--sample", "uniform=20000", "-o", out + ".npz"]
     yield "slice", ["slice", mesh, "--axis", "x", "--size", "128", "-o", out + ".png"]

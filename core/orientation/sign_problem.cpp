@@ -20,6 +20,11 @@ void SignProblem::add(std::size_t surface, int factor, std::vector<double>& rest
   for (const Effect& e : effects(surface)) rest[e.sample] += factor * static_cast<double>(e.winding);
 }
 
+void SignProblem::turn(std::size_t surface, std::vector<double>& rest, std::vector<int>& sign) const {
+  add(surface, -2 * sign[surface], rest);
+  sign[surface] = -sign[surface];
+}
+
 std::vector<int> SignProblem::one_after_the_other(std::vector<double> rest) const {
   std::vector<int> sign(surfaces(), 1);
   for (std::size_t p = 0; p < surfaces(); ++p) {
@@ -40,23 +45,43 @@ double SignProblem::sum(std::vector<double> rest, const std::vector<int>& sign) 
   return sum_of(rest);
 }
 
+bool SignProblem::turn_single(double least, std::vector<double>& rest, std::vector<int>& sign) const {
+  bool turned = false;
+  for (std::size_t p = 0; p < surfaces(); ++p) {
+    // Turning p makes the sum smaller by 4 times this.
+    const double gain = sign[p] * slope(p, rest) - own_[p];
+    if (!(gain > least)) continue;
+    turn(p, rest, sign);
+    turned = true;
+  }
+  return turned;
+}
+
+bool SignProblem::turn_pair(double least, std::vector<double>& rest, std::vector<int>& sign) const {
+  for (std::size_t p = 0; p < surfaces(); ++p) {
+    const double gain = sign[p] * slope(p, rest) - own_[p];
+    turn(p, rest, sign);
+    for (std::size_t q = p + 1; q < surfaces(); ++q) {
+      if (!(gain + sign[q] * slope(q, rest) - own_[q] > least)) continue;
+      turn(q, rest, sign);
+      return true;
+    }
+    turn(p, rest, sign);
+  }
+  return false;
+}
+
 double SignProblem::improve(std::vector<double> rest, std::vector<int>& sign) const {
   constexpr int kMaxPasses = 60;        // a few are enough nearly always
   constexpr double kLeastGain = 1e-12;  // of the sum of weights: less than that is rounding
+  constexpr std::size_t kFew = 64;      // surfaces: all pairs of them take some milliseconds
   double weights = 0.0;
   for (const double w : weight_) weights += w;
   for (std::size_t p = 0; p < surfaces(); ++p) add(p, sign[p], rest);
-  bool turned = true;
-  for (int pass = 0; turned && pass < kMaxPasses; ++pass) {
-    turned = false;
-    for (std::size_t p = 0; p < surfaces(); ++p) {
-      // Turning p makes the sum smaller by 4 times this.
-      const double gain = sign[p] * slope(p, rest) - own_[p];
-      if (!(gain > kLeastGain * weights)) continue;
-      add(p, -2 * sign[p], rest);
-      sign[p] = -sign[p];
-      turned = true;
-    }
+  const double least = kLeastGain * weights;
+  for (int pass = 0; pass < kMaxPasses; ++pass) {
+    if (turn_single(least, rest, sign)) continue;
+    if (surfaces() > kFew || !turn_pair(least, rest, sign)) break;
   }
   return sum_of(rest);
 }

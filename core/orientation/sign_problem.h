@@ -28,7 +28,7 @@ class SignProblem {
 
   [[nodiscard]] double sum(std::vector<double> rest, const std::vector<int>& sign) const;
 
-  // Turns single surfaces, as long as that makes the sum smaller. Returns the sum.
+  // Turns single surfaces, of few also two at once, as long as that makes the sum smaller. Returns the sum.
   double improve(std::vector<double> rest, std::vector<int>& sign) const;
 
  private:
@@ -38,6 +38,11 @@ class SignProblem {
   [[nodiscard]] double sum_of(const std::vector<double>& rest) const;
   [[nodiscard]] double slope(std::size_t surface, const std::vector<double>& rest) const;
   void add(std::size_t surface, int factor, std::vector<double>& rest) const;
+  // `rest`, from here on: with all surfaces.
+  void turn(std::size_t surface, std::vector<double>& rest, std::vector<int>& sign) const;
+  // Whether any were turned: those that make the sum smaller by more than 4 times `least`.
+  bool turn_single(double least, std::vector<double>& rest, std::vector<int>& sign) const;
+  bool turn_pair(double least, std::vector<double>& rest, std::vector<int>& sign) const;
 
   std::vector<double> weight_;
   std::vector<Effect> effects_;  // by surface

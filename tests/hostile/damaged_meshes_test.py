@@ -121,13 +121,14 @@ def check(what, mesh, data):
 
 with tempfile.TemporaryDirectory() as directory:
     paths = [os.path.abspath(path) for path in meshes()]
+    has_shared = os.path.isdir(options.shared)
     os.chdir(directory)
     for i in range(options.count):
         path = choose(paths)
         check("mesh %d of seed %d, %s" % (i, options.seed, os.path.basename(path)), "mesh" + os.path.splitext(path)[1].lower(),
               damaged(contents(path)))
     os.chdir("/")
-if not os.path.isdir(options.shared):
+if not has_shared:
     print("without shared meshes, so that only OBJ is damaged")
 print("of %d meshes: %s" % (len(paths), ", ".join("status %d: %d" % item for item in sorted(seen.items()))))
 # Else the damage would try too little.

@@ -23,7 +23,8 @@ namespace {
 constexpr std::size_t kFewSurfaces = 1500;
 constexpr std::size_t kLargestSurfaces = 48;
 
-constexpr double kParts = 1024.0;  // that an area is divided into, where all of it is large faces
+// A face is large if it has several of so many parts of the area: each of them gets a sample then.
+constexpr double kParts = 1024.0;
 
 // Turned so that its first face runs around its corners by rising coordinates; by exact ones, as all of it may be in
 // one place once it is moved.

@@ -20,6 +20,10 @@ void SignProblem::add(std::size_t surface, int factor, std::vector<double>& rest
   for (const Effect& e : effects(surface)) rest[e.sample] += factor * static_cast<double>(e.winding);
 }
 
+double SignProblem::gain(std::size_t surface, const std::vector<double>& rest, const std::vector<int>& sign) const {
+  return sign[surface] * slope(surface, rest) - own_[surface];
+}
+
 void SignProblem::turn(std::size_t surface, std::vector<double>& rest, std::vector<int>& sign) const {
   add(surface, -2 * sign[surface], rest);
   sign[surface] = -sign[surface];
@@ -48,9 +52,7 @@ double SignProblem::sum(std::vector<double> rest, const std::vector<int>& sign) 
 bool SignProblem::turn_single(double least, std::vector<double>& rest, std::vector<int>& sign) const {
   bool turned = false;
   for (std::size_t p = 0; p < surfaces(); ++p) {
-    // Turning p makes the sum smaller by 4 times this.
-    const double gain = sign[p] * slope(p, rest) - own_[p];
-    if (!(gain > least)) continue;
+    if (!(gain(p, rest, sign) > least)) continue;
     turn(p, rest, sign);
     turned = true;
   }
@@ -59,10 +61,10 @@ bool SignProblem::turn_single(double least, std::vector<double>& rest, std::vect
 
 bool SignProblem::turn_pair(double least, std::vector<double>& rest, std::vector<int>& sign) const {
   for (std::size_t p = 0; p < surfaces(); ++p) {
-    const double gain = sign[p] * slope(p, rest) - own_[p];
+    const double of_first = gain(p, rest, sign);
     turn(p, rest, sign);
     for (std::size_t q = p + 1; q < surfaces(); ++q) {
-      if (!(gain + sign[q] * slope(q, rest) - own_[q] > least)) continue;
+      if (!(of_first + gain(q, rest, sign) > least)) continue;
       turn(q, rest, sign);
       return true;
     }

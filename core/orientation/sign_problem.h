@@ -39,6 +39,8 @@ class SignProblem {
   [[nodiscard]] double slope(std::size_t surface, const std::vector<double>& rest) const;
   void add(std::size_t surface, int factor, std::vector<double>& rest) const;
   // `rest`, from here on: with all surfaces.
+  // Turning a surface makes the sum smaller by 4 times this.
+  [[nodiscard]] double gain(std::size_t surface, const std::vector<double>& rest, const std::vector<int>& sign) const;
   void turn(std::size_t surface, std::vector<double>& rest, std::vector<int>& sign) const;
   // Whether any were turned: those that make the sum smaller by more than 4 times `least`.
   bool turn_single(double least, std::vector<double>& rest, std::vector<int>& sign) const;

@@ -161,7 +161,7 @@ std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces, co
 }
 
 std::vector<SurfaceSample> divided(const std::vector<SurfaceSample>& samples, double area) {
-  constexpr double kMostParts = 32.0;
+  constexpr double kMostParts = 32.0;  // along a side, lest an area of next to nothing makes too many
   std::vector<SurfaceSample> result;
   for (const SurfaceSample& sample : samples) {
     const auto& [p, q, r] = sample.face.corners;

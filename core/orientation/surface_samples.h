@@ -37,7 +37,7 @@ struct NumberedVertices {
                                                         const NumberedVertices& vertices, std::size_t count);
 
 // Samples in place of these, whose order stays. Where a face is at least four times as large as `area`, they are the
-// middles of 4, 9, 16, ... equal parts of it, each no smaller than that.
+// middles of 4, 9, 16, ... equal parts of it, up to 1024, each no smaller than that.
 [[nodiscard]] std::vector<SurfaceSample> divided(const std::vector<SurfaceSample>& samples, double area);
 
 }  // namespace raycone

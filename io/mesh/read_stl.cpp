@@ -34,7 +34,7 @@ class AsciiStlReader {
       } else if (text_.skip_word("solid")) {
         name_ = read_name([this] { return begins_facet(); });
         groups_.start_group(std::string(name_), builder_.triangle_count());
-      } else if (next_ends("solid")) {
+      } else if (next_ends("endsolid")) {
         skip_end_name();
       } else {
         text_.fail_expecting("'facet' or 'endsolid'");
@@ -120,17 +120,18 @@ class AsciiStlReader {
       text_.skip_whitespace();
     }
     builder_.end_polygon();
-    if (!next_ends("loop")) text_.fail_expecting("'vertex' or 'endloop'");
-    if (!next_ends("facet")) text_.fail_expecting("'endfacet'");
+    if (!next_ends("endloop")) text_.fail_expecting("'vertex' or 'endloop'");
+    if (!next_ends("endfacet")) text_.fail_expecting("'endfacet'");
   }
 
-  // "endloop", or "end loop".
-  bool next_ends(const std::string& what) {
-    if (next_is("end" + what)) return true;
+  // `word`: "endloop", or the like. It may be two in one line: "end loop".
+  bool next_ends(std::string_view word) {
+    constexpr std::string_view kEnd = "end";
+    if (next_is(word)) return true;
     const std::size_t start = text_.offset();
-    if (next_is("end")) {
+    if (next_is(kEnd)) {
       const std::size_t line_end = next_line();
-      if (next_is(what) && text_.offset() <= line_end) return true;
+      if (next_is(word.substr(kEnd.size())) && text_.offset() <= line_end) return true;
     }
     text_.seek(start);
     return false;

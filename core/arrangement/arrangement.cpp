@@ -1,12 +1,14 @@
 #include "core/arrangement/arrangement.h"
 
 #include <algorithm>
-#include <map>
+#include <utility>
 
 #include "core/arrangement/contact.h"
+#include "core/arrangement/effort.h"
 #include "core/arrangement/plane_arrangement.h"
 #include "core/exact/predicates.h"
 #include "core/intersections/self_intersections.h"
+#include "core/machine/threads.h"
 #include "core/mesh/disjoint_sets.h"
 
 namespace raycone {
@@ -23,6 +25,17 @@ std::vector<std::uint32_t> faces_with_area(const TriangleMesh& mesh) {
   return faces;
 }
 
+std::optional<std::vector<TrianglePair>> intersecting_pairs_of(const TriangleMesh& mesh,
+                                                               const std::vector<std::uint32_t>& faces,
+                                                               std::size_t most_pairs) {
+  TriangleMesh part{mesh.vertices, {}};
+  for (const std::uint32_t face : faces) part.triangles.push_back(mesh.triangles[face]);
+  std::optional<std::vector<TrianglePair>> pairs = intersecting_pairs(part, most_pairs);
+  if (!pairs) return std::nullopt;
+  for (TrianglePair& pair : *pairs) pair = {faces[pair[0]], faces[pair[1]]};
+  return pairs;
+}
+
 }  // namespace
 
 class Arrangement::Builder {
@@ -31,27 +44,22 @@ class Arrangement::Builder {
 
   bool build(std::size_t most_pairs) {
     const std::vector<std::uint32_t> faces = faces_with_area(mesh_);
-    TriangleMesh with_area{mesh_.vertices, {}};
-    for (const std::uint32_t face : faces) with_area.triangles.push_back(mesh_.triangles[face]);
-    std::optional<std::vector<TrianglePair>> pairs = intersecting_pairs(with_area, most_pairs);
+    const std::optional<std::vector<TrianglePair>> pairs = intersecting_pairs_of(mesh_, faces, most_pairs);
     if (!pairs) return false;
-    for (TrianglePair& pair : *pairs) pair = {faces[pair[0]], faces[pair[1]]};
     add_vertices(*pairs);
-    add_contacts(*pairs);
-    std::vector<bool> is_cut(mesh_.triangles.size(), false);
+    const std::vector<std::uint32_t> group_of = make_groups(*pairs);
     constexpr std::uint64_t kLeastSteps = 1 << 20, kStepsPerPair = 64;
     Effort effort(kLeastSteps + kStepsPerPair * most_pairs);
-    for (const auto& [first, group] : groups_) {
-      if (!cut_group(group, effort)) return false;
-      for (const PlaneGroup::Face& face : group.faces) is_cut[face.number] = true;
-    }
+    if (!add_crossings(effort) || !cut_groups(effort)) return false;
     for (const std::uint32_t face : faces) {
-      if (!is_cut[face]) add(mesh_.triangles[face], face, 1);
+      if (group_of[face] == kNone) add(mesh_.triangles[face], face, 1);
     }
     return true;
   }
 
  private:
+  using Ends = std::vector<Number>;  // of what two faces have in common: one point, or two ends of a segment
+
   // Before all points that are made, so that one of these that is where a vertex is becomes that one.
   void add_vertices(const std::vector<TrianglePair>& pairs) {
     for (const TrianglePair& pair : pairs) {
@@ -63,21 +71,58 @@ class Arrangement::Builder {
     }
   }
 
-  void add_contacts(const std::vector<TrianglePair>& pairs) {
-    std::vector<Contact> contacts;
+  // Groups of the faces that meet others, those of one plane that meet in one. The group of each face, or kNone.
+  std::vector<std::uint32_t> make_groups(const std::vector<TrianglePair>& pairs) {
     DisjointSets planes(mesh_.triangles.size());
-    for (const auto& [s, t] : pairs) {
-      contacts.push_back(
-          contact_of(corners_of(mesh_, mesh_.triangles[s]), corners_of(mesh_, mesh_.triangles[t]), result_.points_));
-      if (contacts.back().is_of_one_plane) planes.join(s, t);
+    const std::vector<Ends> ends = ends_of(pairs, planes);
+    std::vector<bool> is_cut(mesh_.triangles.size(), false);
+    for (const auto& [s, t] : pairs) is_cut[s] = is_cut[t] = true;
+    std::vector<std::uint32_t> group_of = planes.indices([&](std::size_t face) { return is_cut[face]; }, kNone);
+    for (std::uint32_t face = 0; face < group_of.size(); ++face) {
+      if (group_of[face] == kNone) continue;
+      if (group_of[face] == groups_.size()) groups_.emplace_back();
+      groups_[group_of[face]].faces.push_back(group_face(face));
     }
-    std::vector<std::uint32_t> faces;
-    for (const TrianglePair& pair : pairs) faces.insert(faces.end(), pair.begin(), pair.end());
-    std::ranges::sort(faces);
-    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
-    for (const std::uint32_t face : faces) groups_[planes.lowest(face)].faces.push_back(group_face(face));
     for (std::size_t n = 0; n < pairs.size(); ++n) {
-      for (const std::uint32_t face : pairs[n]) add(contacts[n].ends, groups_[planes.lowest(face)]);
+      for (const std::uint32_t face : pairs[n]) add(ends[n], groups_[group_of[face]]);
+    }
+    return group_of;
+  }
+
+  // What pairs have in common, but for those of one plane, which are joined. Takes few at once, for they are large
+  // until they are points.
+  std::vector<Ends> ends_of(const std::vector<TrianglePair>& pairs, DisjointSets<>& planes) {
+    constexpr std::size_t kAtOnce = 4096, kGrain = 16;
+    std::vector<Ends> result;
+    for (std::size_t begin = 0; begin < pairs.size(); begin += kAtOnce) {
+      std::vector<Contact> contacts(std::min(kAtOnce, pairs.size() - begin));
+      parallel_for_each(contacts.size(), kGrain, [&](std::size_t n) {
+        const auto& [s, t] = pairs[begin + n];
+        contacts[n] = contact_of(corners_of(mesh_, mesh_.triangles[s]), corners_of(mesh_, mesh_.triangles[t]));
+      });
+      for (std::size_t n = 0; n < contacts.size(); ++n) {
+        if (contacts[n].is_of_one_plane) planes.join(pairs[begin + n][0], pairs[begin + n][1]);
+      }
+      add_ends(contacts, result);
+    }
+    return result;
+  }
+
+  void add_ends(const std::vector<Contact>& contacts, std::vector<Ends>& result) {
+    std::vector<ExactPoints::OnPlane> passes;
+    for (const Contact& contact : contacts) {
+      passes.insert(passes.end(), contact.passes.begin(), contact.passes.end());
+    }
+    const std::vector<Number> made = result_.points_.add(passes);
+    auto next = made.begin();
+    for (const Contact& contact : contacts) {
+      const auto end = next + static_cast<std::ptrdiff_t>(contact.passes.size());
+      Ends ends(next, end);
+      for (const Vec3& corner : contact.corners) ends.push_back(result_.points_.add(corner));
+      std::ranges::sort(ends);
+      ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+      result.push_back(std::move(ends));
+      next = end;
     }
   }
 
@@ -88,7 +133,7 @@ class Arrangement::Builder {
     return result;
   }
 
-  static void add(const std::vector<Number>& ends, PlaneGroup& group) {
+  static void add(const Ends& ends, PlaneGroup& group) {
     if (ends.size() == 2) {
       group.segments.emplace_back(ends[0], ends[1]);
     } else {
@@ -96,15 +141,46 @@ class Arrangement::Builder {
     }
   }
 
-  bool cut_group(const PlaneGroup& group, Effort& effort) {
-    const std::optional<std::vector<PlanePiece>> pieces = cut(group, result_.points_, effort);
-    if (!pieces) return false;
-    for (const PlanePiece& piece : *pieces) {
-      Triangle corners{};
-      std::ranges::transform(piece.corners, corners.begin(), [&](Number point) { return corner(point); });
-      add(corners, piece.face, piece.multiplicity);
+  // To the points of the groups. False if that takes too long.
+  bool add_crossings(Effort& effort) {
+    std::vector<std::optional<std::vector<ExactPoints::Crossing>>> of_groups(groups_.size());
+    const bool is_done = parallel_for_each(groups_.size(), effort, [&](std::size_t n, Effort& own) {
+      of_groups[n] = crossings_of(groups_[n], result_.points_, own);
+      return of_groups[n].has_value();
+    });
+    if (!is_done) return false;
+    std::vector<ExactPoints::Crossing> crossings;
+    for (const auto& of_group : of_groups) crossings.insert(crossings.end(), of_group->begin(), of_group->end());
+    const std::vector<Number> made = result_.points_.add(crossings);
+    auto next = made.begin();
+    for (std::size_t n = 0; n < groups_.size(); ++n) {
+      const auto end = next + static_cast<std::ptrdiff_t>(of_groups[n]->size());
+      groups_[n].points.insert(groups_[n].points.end(), next, end);
+      next = end;
     }
     return true;
+  }
+
+  // False if that takes too long.
+  bool cut_groups(Effort& effort) {
+    TrianglesAround around{};
+    for (int axis = 0; axis < 3; ++axis) around[axis] = result_.points_.add_triangle_around(axis);
+    std::vector<std::optional<std::vector<PlanePiece>>> pieces(groups_.size());
+    const bool is_done = parallel_for_each(groups_.size(), effort, [&](std::size_t n, Effort& own) {
+      pieces[n] = cut(groups_[n], result_.points_, around, own);
+      return pieces[n].has_value();
+    });
+    if (!is_done) return false;
+    for (const auto& of_group : pieces) {
+      for (const PlanePiece& piece : *of_group) add(piece);
+    }
+    return true;
+  }
+
+  void add(const PlanePiece& piece) {
+    Triangle corners{};
+    std::ranges::transform(piece.corners, corners.begin(), [&](Number point) { return corner(point); });
+    add(corners, piece.face, piece.multiplicity);
   }
 
   void add(const Triangle& corners, std::uint32_t source, std::int32_t multiplicity) {
@@ -125,8 +201,8 @@ class Arrangement::Builder {
 
   const TriangleMesh& mesh_;
   Arrangement& result_;
-  std::vector<std::uint32_t> corners_;          // of points
-  std::map<std::uint32_t, PlaneGroup> groups_;  // by their first face
+  std::vector<std::uint32_t> corners_;  // of points
+  std::vector<PlaneGroup> groups_;      // by their first faces
 };
 
 std::optional<Arrangement> Arrangement::of(const TriangleMesh& mesh, std::size_t most_pairs) {

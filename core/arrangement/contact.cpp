@@ -29,26 +29,22 @@ bool passes_through(const Vec3& a, const Vec3& b, const Corners3& triangle) {
 }
 
 // Adds the points in which edges of `s` pass through `t`, and corners of `s` on `t`.
-void add_ends(const Corners3& s, const Sides& sides, const Corners3& t, ExactPoints& points,
-              std::vector<ExactPoints::Number>& ends) {
-  const auto add = [&](ExactPoints::Number point) {
-    if (std::ranges::find(ends, point) == ends.end()) ends.push_back(point);
-  };
+void add_ends(const Corners3& s, const Sides& sides, const Corners3& t, Contact& contact) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t next = (i + 1) % 3;
-    if (sides[i] == 0 && on_triangle(t[0], t[1], t[2], s[i])) add(points.add(s[i]));
-    if (sides[i] * sides[next] < 0 && passes_through(s[i], s[next], t)) add(points.add_on_plane(s[i], s[next], t));
+    if (sides[i] == 0 && on_triangle(t[0], t[1], t[2], s[i])) contact.corners.push_back(s[i]);
+    if (sides[i] * sides[next] < 0 && passes_through(s[i], s[next], t)) contact.passes.push_back({s[i], s[next], t});
   }
 }
 
 }  // namespace
 
-Contact contact_of(const Corners3& s, const Corners3& t, ExactPoints& points) {
+Contact contact_of(const Corners3& s, const Corners3& t) {
   const Sides of_s = sides_of(s, t);
-  if (of_s == Sides{0, 0, 0}) return {true, {}};
+  if (of_s == Sides{0, 0, 0}) return {true, {}, {}};
   Contact contact;
-  add_ends(s, of_s, t, points, contact.ends);
-  add_ends(t, sides_of(t, s), s, points, contact.ends);
+  add_ends(s, of_s, t, contact);
+  add_ends(t, sides_of(t, s), s, contact);
   return contact;
 }
 

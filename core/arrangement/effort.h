@@ -1,7 +1,11 @@
 // How long a computation may go on.
 #pragma once
 
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
+
+#include "core/machine/threads.h"
 
 namespace raycone {
 
@@ -10,15 +14,31 @@ class Effort {
  public:
   explicit Effort(std::uint64_t steps) : left_(steps) {}
 
-  // Takes one. False where none is left.
-  [[nodiscard]] bool take() {
-    if (left_ == 0) return false;
-    --left_;
-    return true;
+  // Takes some. False where fewer are left; then none is.
+  [[nodiscard]] bool take(std::uint64_t steps = 1) {
+    const bool are_left = steps <= left_;
+    left_ -= are_left ? steps : left_;
+    return are_left;
   }
+  [[nodiscard]] std::uint64_t left() const { return left_; }
 
  private:
   std::uint64_t left_;
 };
+
+// Calls work(n, effort) for each n below `count`, on the threads that ThreadLimit allows. False where one of them is,
+// or where together they take more steps than there are: the same for any number of threads.
+template <class Work>
+[[nodiscard]] bool parallel_for_each(std::size_t count, Effort& effort, const Work& work) {
+  const std::uint64_t most = effort.left();
+  std::atomic<std::uint64_t> taken = 0;
+  parallel_for_each(count, [&](std::size_t n) {
+    if (taken > most) return;  // the others are in vain
+    Effort own(most);
+    const bool is_done = work(n, own);
+    taken += is_done ? most - own.left() : most + 1;
+  });
+  return effort.take(taken);
+}
 
 }  // namespace raycone

@@ -33,58 +33,36 @@ std::vector<Segment> all_segments(const PlaneGroup& group) {
   return segments;
 }
 
-// The points in which segments cross; where one ends on another that is a point already.
-class Crossings {
- public:
-  Crossings(std::span<const Segment> segments, int axis, ExactPoints& points) : axis_(axis), points_(points) {
-    const int right = (axis + 1) % 3, up = (axis + 2) % 3;
-    for (const auto& [from, to] : segments) {
-      const Vec3 &a = points.rounded(from), &b = points.rounded(to);
-      const auto [left_end, right_end] = std::minmax({a[right], b[right]});
-      const auto [lower, upper] = std::minmax({a[up], b[up]});
-      boxes_.push_back({left_end, right_end, lower, upper, {from, to}});
-    }
-    std::ranges::sort(boxes_, [](const Boxed& s, const Boxed& t) {
-      return std::tie(s.left, s.segment) < std::tie(t.left, t.segment);
-    });
-  }
+bool are_apart(const Segment& line, const Segment& ends, int axis, const ExactPoints& points) {
+  return points.turn(axis, line.first, line.second, ends.first) *
+             points.turn(axis, line.first, line.second, ends.second) <
+         0;
+}
 
-  // None if that takes too long.
-  [[nodiscard]] std::optional<std::vector<Number>> find(Effort& effort) {
-    std::vector<Number> found;
-    for (std::size_t n = 0; n < boxes_.size(); ++n) {
-      for (std::size_t m = n + 1; m < boxes_.size() && boxes_[m].left <= boxes_[n].right; ++m) {
-        if (!effort.take()) return std::nullopt;
-        if (boxes_[m].lower > boxes_[n].upper || boxes_[m].upper < boxes_[n].lower) continue;
-        if (cross(boxes_[n].segment, boxes_[m].segment)) found.push_back(crossing(n, m));
-      }
-    }
-    return found;
-  }
+bool cross_each_other(const Segment& s, const Segment& t, int axis, const ExactPoints& points) {
+  return are_apart(s, t, axis, points) && are_apart(t, s, axis, points);
+}
 
- private:
-  // Rounding keeps the order of numbers, so that segments that meet have boxes that do.
-  struct Boxed {
-    double left, right, lower, upper;
-    Segment segment;
-  };
-
-  [[nodiscard]] bool are_apart(const Segment& line, const Segment& ends) const {
-    return points_.turn(axis_, line.first, line.second, ends.first) *
-               points_.turn(axis_, line.first, line.second, ends.second) <
-           0;
-  }
-  [[nodiscard]] bool cross(const Segment& s, const Segment& t) const { return are_apart(s, t) && are_apart(t, s); }
-  [[nodiscard]] Number crossing(std::size_t n, std::size_t m) {
-    const auto [a, b] = boxes_[n].segment;
-    const auto [c, d] = boxes_[m].segment;
-    return points_.add_crossing(axis_, a, b, c, d);
-  }
-
-  int axis_;
-  ExactPoints& points_;
-  std::vector<Boxed> boxes_;
+// Rounding keeps the order of numbers, so that segments that meet have boxes that do.
+struct BoxedSegment {
+  double left, right, lower, upper;
+  Segment segment;
 };
+
+std::vector<BoxedSegment> boxed(std::span<const Segment> segments, int axis, const ExactPoints& points) {
+  const int right = (axis + 1) % 3, up = (axis + 2) % 3;
+  std::vector<BoxedSegment> boxes;
+  for (const auto& [from, to] : segments) {
+    const Vec3 &a = points.rounded(from), &b = points.rounded(to);
+    const auto [left_end, right_end] = std::minmax({a[right], b[right]});
+    const auto [lower, upper] = std::minmax({a[up], b[up]});
+    boxes.push_back({left_end, right_end, lower, upper, {from, to}});
+  }
+  std::ranges::sort(boxes, [](const BoxedSegment& s, const BoxedSegment& t) {
+    return std::tie(s.left, s.segment) < std::tie(t.left, t.segment);
+  });
+  return boxes;
+}
 
 // How many times more the boundaries of all faces pass along an edge in its direction than against it.
 class EdgeCounts {
@@ -183,15 +161,13 @@ class FacesOfGroup {
   std::vector<Extent> boxes_;
 };
 
-// Of all corners and crossings of the segments, each of which is a chain of edges. None if that takes too long.
-std::optional<PlaneTriangulation> triangulated(const PlaneGroup& group, int axis, ExactPoints& points, Effort& effort) {
+// Of all points of the group, with segments and edges that are chains of edges. None if that takes too long.
+std::optional<PlaneTriangulation> triangulated(const PlaneGroup& group, int axis, const ExactPoints& points,
+                                               const TrianglesAround& around, Effort& effort) {
   const std::vector<Segment> segments = all_segments(group);
-  const std::optional<std::vector<Number>> crossings = Crossings(segments, axis, points).find(effort);
-  if (!crossings) return std::nullopt;
   std::vector<Number> corners = group.points;
-  corners.insert(corners.end(), crossings->begin(), crossings->end());
   for (const auto& [from, to] : segments) corners.insert(corners.end(), {from, to});
-  std::optional<PlaneTriangulation> triangulation(std::in_place, points, axis, effort);
+  std::optional<PlaneTriangulation> triangulation(std::in_place, points, axis, around[axis], effort);
   for (const Number corner : corners) {
     if (!triangulation->insert(corner)) return std::nullopt;
   }
@@ -204,9 +180,26 @@ std::optional<PlaneTriangulation> triangulated(const PlaneGroup& group, int axis
 
 }  // namespace
 
-std::optional<std::vector<PlanePiece>> cut(const PlaneGroup& group, ExactPoints& points, Effort& effort) {
+std::optional<std::vector<ExactPoints::Crossing>> crossings_of(const PlaneGroup& group, const ExactPoints& points,
+                                                               Effort& effort) {
   const int axis = points.axis_to_see(group.faces.front().corners);
-  std::optional<PlaneTriangulation> triangulation = triangulated(group, axis, points, effort);
+  const std::vector<BoxedSegment> boxes = boxed(all_segments(group), axis, points);
+  std::vector<ExactPoints::Crossing> found;
+  for (std::size_t n = 0; n < boxes.size(); ++n) {
+    for (std::size_t m = n + 1; m < boxes.size() && boxes[m].left <= boxes[n].right; ++m) {
+      if (!effort.take()) return std::nullopt;
+      if (boxes[m].lower > boxes[n].upper || boxes[m].upper < boxes[n].lower) continue;
+      const Segment &s = boxes[n].segment, &t = boxes[m].segment;
+      if (cross_each_other(s, t, axis, points)) found.push_back({axis, s.first, s.second, t.first, t.second});
+    }
+  }
+  return found;
+}
+
+std::optional<std::vector<PlanePiece>> cut(const PlaneGroup& group, const ExactPoints& points,
+                                           const TrianglesAround& around, Effort& effort) {
+  const int axis = points.axis_to_see(group.faces.front().corners);
+  std::optional<PlaneTriangulation> triangulation = triangulated(group, axis, points, around, effort);
   if (!triangulation) return std::nullopt;
   EdgeCounts counts;
   for (const PlaneGroup::Face& face : group.faces) {

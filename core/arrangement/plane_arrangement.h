@@ -12,6 +12,8 @@
 
 namespace raycone {
 
+using TrianglesAround = std::array<std::array<ExactPoints::Number, 3>, 3>;  // along each axis
+
 struct PlaneGroup {
   struct Face {
     std::uint32_t number;  // what it is called
@@ -29,9 +31,15 @@ struct PlanePiece {
   std::int32_t multiplicity;                   // positive: how many faces of this direction more than of the other
 };
 
+// Where segments of a group cross each other or edges of faces: not where one ends on the other, which is a point
+// already. None if that takes too long.
+[[nodiscard]] std::optional<std::vector<ExactPoints::Crossing>> crossings_of(const PlaneGroup& group,
+                                                                             const ExactPoints& points, Effort& effort);
+
 // The pieces that the faces have between the edges of all faces and all segments; pieces of which as many faces go
-// either way are left out. Every point of the group, and where segments cross each other or edges, is a corner. None if
-// that takes too long.
-[[nodiscard]] std::optional<std::vector<PlanePiece>> cut(const PlaneGroup& group, ExactPoints& points, Effort& effort);
+// either way are left out. Every point of the group is a corner. None if that takes too long. Precondition: the group
+// has its crossings among its points. `around`: ExactPoints::add_triangle_around() along each axis. Thread-safe.
+[[nodiscard]] std::optional<std::vector<PlanePiece>> cut(const PlaneGroup& group, const ExactPoints& points,
+                                                         const TrianglesAround& around, Effort& effort);
 
 }  // namespace raycone

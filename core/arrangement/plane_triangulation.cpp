@@ -15,10 +15,9 @@ constexpr std::size_t last(std::size_t place) { return (place + 2) % 3; }
 
 }  // namespace
 
-PlaneTriangulation::PlaneTriangulation(ExactPoints& points, int axis, Effort& effort)
-    : points_(&points), axis_(axis), effort_(&effort) {
-  const std::array<Number, 3> around = points.add_triangle_around(axis);
-  points_of_.assign(around.begin(), around.end());
+PlaneTriangulation::PlaneTriangulation(const ExactPoints& points, int axis, const std::array<Number, 3>& around,
+                                       Effort& effort)
+    : points_(&points), axis_(axis), effort_(&effort), points_of_(around.begin(), around.end()) {
   faces_.push_back({{0, 1, 2}, {kNone, kNone, kNone}});
   face_of_.assign(3, 0);
 }

@@ -28,8 +28,8 @@ class PlaneTriangulation {
     std::array<std::uint32_t, 3> beyond;   // the face across from each corner; kNone outside
   };
 
-  // `points` and `effort` must stay. Seen along `axis`.
-  PlaneTriangulation(ExactPoints& points, int axis, Effort& effort);
+  // `points` and `effort` must stay. Seen along `axis`. `around`: the triangle far around them.
+  PlaneTriangulation(const ExactPoints& points, int axis, const std::array<Number, 3>& around, Effort& effort);
 
   // False if that takes too long. Precondition: the point is within the triangle around all.
   [[nodiscard]] bool insert(Number point);
@@ -75,7 +75,7 @@ class PlaneTriangulation {
   [[nodiscard]] Way way_from(std::uint32_t from, std::uint32_t to) const;
   [[nodiscard]] bool clear(const Way& way, std::uint32_t from);
 
-  ExactPoints* points_;
+  const ExactPoints* points_;
   int axis_;
   Effort* effort_;
   std::vector<Face> faces_;

@@ -11,6 +11,7 @@
 #include "core/exact/exact_integers.h"
 #include "core/exact/scale.h"
 #include "core/exact/sure_sign.h"
+#include "core/machine/threads.h"
 
 namespace raycone {
 namespace {
@@ -109,25 +110,45 @@ struct ExactPoints::Table {
   }
   [[nodiscard]] Fractions fractions(const Vec3& p) const { return {integers(p), 1}; }
 
-  Number add(const Fractions& point, const Vec3& nearest) {
-    const auto key = std::make_tuple(nearest.x, nearest.y, nearest.z);
-    for (auto [at, end] = by_rounded.equal_range(key); at != end; ++at) {
-      if (are_equal(points[at->second], point)) return at->second;
-    }
-    const auto number = static_cast<Number>(points.size());
-    by_rounded.emplace(key, number);
-    points.push_back(point);
-    rounded.push_back(nearest);
-    return number;
-  }
-  Number add(Fractions point) {
+  // A point and the nearest doubles.
+  struct Placed {
+    Fractions exact;
+    Vec3 nearest;
+  };
+  [[nodiscard]] Placed placed(Fractions point) const {
     point = with_positive_denominator(std::move(point));
     const auto nearest = [&](const mpz_class& numerator) {
       return nearest_double(numerator, point.denominator, exponent);
     };
     const IntegerVec3& n = point.numerators;
     const Vec3 at{nearest(n.x), nearest(n.y), nearest(n.z)};
-    return add(point, at);
+    return {std::move(point), at};
+  }
+
+  Number add(Placed point) {
+    const Vec3& at = point.nearest;
+    const auto key = std::make_tuple(at.x, at.y, at.z);
+    for (auto [same, end] = by_rounded.equal_range(key); same != end; ++same) {
+      if (are_equal(points[same->second], point.exact)) return same->second;
+    }
+    const auto number = static_cast<Number>(points.size());
+    by_rounded.emplace(key, number);
+    points.push_back(std::move(point.exact));
+    rounded.push_back(at);
+    return number;
+  }
+  // make(n) for all n below `count`, by many threads, so many at once that it does not take much memory.
+  template <class Make>
+  std::vector<Number> add_each(std::size_t count, const Make& make) {
+    constexpr std::size_t kAtOnce = 4096, kGrain = 32;
+    std::vector<Number> numbers;
+    numbers.reserve(count);
+    for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
+      std::vector<Placed> made(std::min(kAtOnce, count - begin));
+      parallel_for_each(made.size(), kGrain, [&](std::size_t n) { made[n] = placed(make(begin + n)); });
+      for (Placed& point : made) numbers.push_back(add(std::move(point)));
+    }
+    return numbers;
   }
 };
 
@@ -153,22 +174,28 @@ const Vec3& ExactPoints::rounded(Number point) const { return table_->rounded[po
 
 ExactPoints::Number ExactPoints::add(const Vec3& vertex) {
   const Vec3 without_signs = vertex + Vec3{0.0, 0.0, 0.0};  // of zeros
-  return table_->add(table_->fractions(without_signs), without_signs);
+  return table_->add({table_->fractions(without_signs), without_signs});
 }
 
-ExactPoints::Number ExactPoints::add_on_plane(const Vec3& a, const Vec3& b, const Corners3& plane) {
-  const IntegerVec3 from = table_->integers(a), to = table_->integers(b), corner = table_->integers(plane[0]);
-  const IntegerVec3 normal = cross(table_->integers(plane[1]) - corner, table_->integers(plane[2]) - corner);
-  const mpz_class before = dot(normal, from - corner), behind = dot(normal, to - corner);
-  return table_->add({before * to - behind * from, before - behind});
+std::vector<ExactPoints::Number> ExactPoints::add(std::span<const OnPlane> points) {
+  return table_->add_each(points.size(), [&](std::size_t n) -> Fractions {
+    const auto& [a, b, plane] = points[n];
+    const IntegerVec3 from = table_->integers(a), to = table_->integers(b), corner = table_->integers(plane[0]);
+    const IntegerVec3 normal = cross(table_->integers(plane[1]) - corner, table_->integers(plane[2]) - corner);
+    const mpz_class before = dot(normal, from - corner), behind = dot(normal, to - corner);
+    return {before * to - behind * from, before - behind};
+  });
 }
 
-ExactPoints::Number ExactPoints::add_crossing(int axis, Number a, Number b, Number c, Number d) {
-  const Fractions &from = table_->points[a], &to = table_->points[b];
-  const mpz_class before = determinant(axis, table_->points[c], table_->points[d], from);
-  const mpz_class behind = determinant(axis, table_->points[c], table_->points[d], to);
-  return table_->add(
-      {before * to.numerators - behind * from.numerators, to.denominator * before - from.denominator * behind});
+std::vector<ExactPoints::Number> ExactPoints::add(std::span<const Crossing> points) {
+  return table_->add_each(points.size(), [&](std::size_t n) -> Fractions {
+    const auto& [axis, a, b, left, right] = points[n];
+    const std::vector<Fractions>& known = table_->points;
+    const Fractions &from = known[a], &to = known[b];
+    const mpz_class before = determinant(axis, known[left], known[right], from);
+    const mpz_class behind = determinant(axis, known[left], known[right], to);
+    return {before * to.numerators - behind * from.numerators, to.denominator * before - from.denominator * behind};
+  });
 }
 
 ExactPoints::Number ExactPoints::add_between(const std::array<Number, 3>& points,
@@ -180,7 +207,7 @@ ExactPoints::Number ExactPoints::add_between(const std::array<Number, 3>& points
         weights[i] * table_->points[points[(i + 1) % 3]].denominator * table_->points[points[(i + 2) % 3]].denominator;
     mean = {mean.numerators + factor * point.numerators, mean.denominator + point.denominator * factor};
   }
-  return table_->add(mean);
+  return table_->add(table_->placed(std::move(mean)));
 }
 
 std::array<ExactPoints::Number, 3> ExactPoints::add_triangle_around(int axis) {
@@ -188,7 +215,7 @@ std::array<ExactPoints::Number, 3> ExactPoints::add_triangle_around(int axis) {
     Vec3 p{0.0, 0.0, 0.0};
     p[(axis + 1) % 3] = right * table_->above;
     p[(axis + 2) % 3] = up * table_->above;
-    return table_->add(table_->fractions(p), p);
+    return table_->add({table_->fractions(p), p});
   };
   return {point(-4.0, -2.0), point(4.0, -2.0), point(0.0, 6.0)};
 }

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "core/data/triangle_mesh.h"
 #include "core/data/vec3.h"
@@ -18,6 +20,17 @@ class ExactPoints {
  public:
   using Number = std::uint32_t;
 
+  // A point, where the line through two vertices meets the plane through three others. Precondition: it does in one.
+  struct OnPlane {
+    Vec3 from, to;
+    Corners3 plane;
+  };
+  // A point, where from -> to crosses left -> right. Precondition: they are in one plane, seen along `axis`, and cross.
+  struct Crossing {
+    int axis;
+    Number from, to, left, right;
+  };
+
   // For a mesh whose used vertices are below 2^1020.
   explicit ExactPoints(const TriangleMesh& mesh);
   ExactPoints(ExactPoints&&) noexcept;
@@ -31,10 +44,9 @@ class ExactPoints {
 
   // A used vertex of the mesh.
   Number add(const Vec3& vertex);
-  // Where the line through two vertices meets the plane through three others. Precondition: it does in one point.
-  Number add_on_plane(const Vec3& a, const Vec3& b, const Corners3& plane);
-  // Where a -> b crosses c -> d. Precondition: they are in one plane, which is seen along `axis`, and cross.
-  Number add_crossing(int axis, Number a, Number b, Number c, Number d);
+  // Many points in their order, the same as one after the other; computes them on the threads that ThreadLimit allows.
+  std::vector<Number> add(std::span<const OnPlane> points);
+  std::vector<Number> add(std::span<const Crossing> points);
   // The mean of three points by these weights. Precondition: their sum is not 0.
   Number add_between(const std::array<Number, 3>& points, const std::array<std::uint32_t, 3>& weights);
   // A triangle, counter-clockwise seen along `axis`, that then has the whole mesh within it.

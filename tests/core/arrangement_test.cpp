@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "core/arrangement/arranged_patches.h"
 #include "core/machine/threads.h"
@@ -85,10 +87,16 @@ TEST(Arrangement, IsTheSameForAnyNumberOfThreads) {
   mesh = weld(mesh, {});
   const auto with = [&](int threads) {
     const ThreadLimit limit(threads);
-    return Arrangement::of(mesh, kEnough).value().triangles();
+    const Arrangement arrangement = Arrangement::of(mesh, kEnough).value();
+    std::vector<Vec3> corners;
+    for (std::uint32_t corner = 0; corner < arrangement.corners(); ++corner) {
+      corners.push_back(arrangement.rounded(corner));
+    }
+    return std::make_pair(arrangement.triangles(), corners);
   };
   EXPECT_EQ(with(1), with(2));
-  EXPECT_GT(with(1).size(), 2 * mesh.triangles.size());  // many meet
+  EXPECT_EQ(with(1), with(5));
+  EXPECT_GT(with(1).first.size(), 2 * mesh.triangles.size());  // many meet
 }
 
 }  // namespace

@@ -87,7 +87,7 @@ TEST(ExactPoints, IsOnTheSameSidesAtAnyScale) {
 TEST(ExactPoints, HoldsWhatDoublesCannot) {
   const Vec3 a{0.1, 0.2, 0.3}, b{0.7, -0.3, 0.9}, c{-0.4, 0.8, 0.5}, from{0.3, 0.1, -1.0}, to{0.1, 0.3, 2.0};
   ExactPoints points(with_vertices({a, b, c, from, to}));
-  const auto on_plane = points.add_on_plane(from, to, {a, b, c});
+  const auto on_plane = points.add(std::vector<ExactPoints::OnPlane>{{from, to, {a, b, c}}}).at(0);
   EXPECT_EQ(points.side({a, b, c}, on_plane), 0);
   EXPECT_EQ(points.side({a, b, c}, points.add(from)), -points.side({a, b, c}, points.add(to)));
   for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(points.turn(axis, from, to, on_plane), 0);
@@ -104,12 +104,34 @@ TEST(ExactPoints, KnowsAPointByItsPlaceHoweverItIsMade) {
   const auto corner_a = points.add(a), corner_b = points.add(b), corner_c = points.add(c), vertex = points.add(inner);
   EXPECT_EQ(points.add({-0.0, 0.0, -0.0}), corner_a);
   EXPECT_EQ(points.add_between({corner_a, corner_b, corner_c}, {5, 5, 5}), vertex);
-  EXPECT_EQ(points.add_on_plane({1, 1, 5}, {1, 1, -3}, {a, b, c}), vertex);
-  EXPECT_EQ(points.add_crossing(2, corner_a, points.add(diagonal), points.add(right), points.add(up)), vertex);
+  const std::vector<ExactPoints::OnPlane> on_plane{{{1, 1, 5}, {1, 1, -3}, {a, b, c}}};
+  EXPECT_EQ(points.add(on_plane), std::vector{vertex});
+  const std::vector<ExactPoints::Crossing> crossing{
+      {2, corner_a, points.add(diagonal), points.add(right), points.add(up)}};
+  EXPECT_EQ(points.add(crossing), std::vector{vertex});
   EXPECT_NE(points.add_between({corner_a, corner_b, corner_c}, {5, 5, 6}), vertex);
   const auto size = points.size();
   EXPECT_EQ(points.add(b), corner_b);
   EXPECT_EQ(points.size(), size);
+}
+
+// By several threads, too, which are not done in this order.
+TEST(ExactPoints, NumbersManyInTheirOrder) {
+  const Vec3 a{0, 0, 0}, b{8, 0, 0}, c{0, 8, 0};
+  std::vector<ExactPoints::OnPlane> all;
+  for (int n = 0; n < 10000; ++n) {
+    const double x = (n % 3000) / 1024.0;  // after three thousand the same points come again
+    all.push_back({{x, 1, 1}, {x, 1, -2}, {a, b, c}});
+  }
+  std::vector<Vec3> vertices{a, b, c};
+  for (const auto& [from, to, plane] : all) vertices.insert(vertices.end(), {from, to});
+  ExactPoints points(with_vertices(vertices));
+  const std::vector<ExactPoints::Number> numbers = points.add(all);
+  ASSERT_EQ(numbers.size(), all.size());
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    ASSERT_EQ(numbers[n], n % 3000);
+    ASSERT_EQ(points.rounded(numbers[n]), (Vec3{all[n].from.x, 1, 0}));
+  }
 }
 
 // x = 1/3, and others, to the last bit.

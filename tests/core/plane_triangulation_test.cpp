@@ -66,7 +66,7 @@ TEST(PlaneTriangulation, HasPointsAndSegmentsOfALattice) {
   for (int round = 0; round < 300; ++round) {
     ExactPoints points(lattice_mesh());
     Effort effort(1 << 20);
-    PlaneTriangulation triangulation(points, 2, effort);
+    PlaneTriangulation triangulation(points, 2, points.add_triangle_around(2), effort);
     std::vector<Number> inserted;
     for (int n = 0; n < 3 + round % 60; ++n) {
       const double x = std::floor(test::uniform(random, 0, kSize + 1)),
@@ -108,7 +108,7 @@ TEST(PlaneTriangulation, HasPointsAndSegmentsOfALattice) {
 TEST(PlaneTriangulation, EndsWhereItsEffortDoes) {
   ExactPoints points(lattice_mesh());
   Effort effort(3);
-  PlaneTriangulation triangulation(points, 2, effort);
+  PlaneTriangulation triangulation(points, 2, points.add_triangle_around(2), effort);
   int inserted = 0;
   for (double x = 0; x < 10; x += 1) inserted += triangulation.insert(points.add({x, 0, 0})) ? 1 : 0;
   EXPECT_LT(inserted, 4);

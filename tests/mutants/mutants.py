@@ -670,7 +670,7 @@ MUTANTS = [
     Mutant("far_parts_kept", "no part of a mesh may be far from nodes of both kinds", [
         ("core/filling/seen_by_nodes.cpp", "!mixed.are_near_to(t, vertices); }) ? Sight::kInPart", "!mixed.are_near_to(t, vertices); }) ? Sight::kWhole")]),
     Mutant("faces_cut_apart_once", "edges of faces cross each other in a plane, too", [
-        ("core/arrangement/plane_arrangement.cpp", "if (cross(boxes_[n].segment, boxes_[m].segment)) found", "if (n > m) found")]),
+        ("core/arrangement/plane_arrangement.cpp", "if (cross_each_other(s, t, axis, points)) found", "if (n > m) found")]),
     Mutant("multiplicity_forgotten", "two faces that lie on each other change winding numbers by two", [
         ("core/arrangement/plane_arrangement.cpp", "*face, std::abs(multiplicity[n])", "*face, 1")]),
     Mutant("corners_of_faces_missed", "a corner of one face on another is a point of both", [

@@ -158,7 +158,7 @@ class OpenSurfaceTurner::Search {
   // From what rays say, and on from there: what is far counts as it is turned at the time.
   [[nodiscard]] std::vector<int> turn_many() const {
     DipoleTree tree = far_tree();
-    const SignProblem near = problem(near_samples(tree));
+    SignProblem near = problem(near_samples(tree));
     std::vector<int> best = voted();
     std::vector<double> rest = with_far(tree, best);
     double least = near.sum(rest, best);

@@ -26,30 +26,32 @@ class SignProblem {
   // Starting from no surface at all, one after the other gets the sign that makes the sum smaller.
   [[nodiscard]] std::vector<int> one_after_the_other(std::vector<double> rest) const;
 
-  [[nodiscard]] double sum(std::vector<double> rest, const std::vector<int>& sign) const;
+  [[nodiscard]] double sum(const std::vector<double>& rest, const std::vector<int>& sign) const;
 
-  // Turns single surfaces, of few also two at once, as long as that makes the sum smaller. Returns the sum.
-  double improve(std::vector<double> rest, std::vector<int>& sign) const;
+  // Turns surfaces until the sum is as small as is found: of many as long as each turn makes it smaller, of few beyond
+  // that. Returns the sum. Uses the threads that ThreadLimit allows; the same for any number of them.
+  double improve(const std::vector<double>& rest, std::vector<int>& sign);
 
  private:
   [[nodiscard]] std::span<const Effect> effects(std::size_t surface) const {
     return std::span(effects_).subspan(begin_[surface], begin_[surface + 1] - begin_[surface]);
   }
-  [[nodiscard]] double sum_of(const std::vector<double>& rest) const;
   [[nodiscard]] double slope(std::size_t surface, const std::vector<double>& rest) const;
   void add(std::size_t surface, int factor, std::vector<double>& rest) const;
+  [[nodiscard]] std::vector<double> with_all(std::vector<double> rest, const std::vector<int>& sign) const;
   // `rest`, from here on: with all surfaces.
   // Turning a surface makes the sum smaller by 4 times this.
   [[nodiscard]] double gain(std::size_t surface, const std::vector<double>& rest, const std::vector<int>& sign) const;
-  void turn(std::size_t surface, std::vector<double>& rest, std::vector<int>& sign) const;
   // Whether any were turned: those that make the sum smaller by more than 4 times `least`.
   bool turn_single(double least, std::vector<double>& rest, std::vector<int>& sign) const;
-  bool turn_pair(double least, std::vector<double>& rest, std::vector<int>& sign) const;
+  void turn_chains(double least, const std::vector<double>& rest, std::vector<int>& sign);
+  void make_products();
 
   std::vector<double> weight_;
   std::vector<Effect> effects_;  // by surface
   std::vector<std::size_t> begin_;
-  std::vector<double> own_;  // per surface: the sum of weight w^2
+  std::vector<double> own_;       // per surface: the sum of weight w^2
+  std::vector<double> products_;  // of each two surfaces, of few: the sum of weight w w; made once
 };
 
 }  // namespace raycone

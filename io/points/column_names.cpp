@@ -90,4 +90,12 @@ std::optional<Columns> named_columns(const std::vector<std::string_view>& names)
   return columns.count == std::array{1, 1, 1} ? std::optional(columns.last) : std::nullopt;
 }
 
+bool names_axis_elsewhere(const std::vector<std::string_view>& names) {
+  for (std::size_t column = 0; column < std::min(names.size(), kNoAxis); ++column) {
+    const std::size_t axis = axis_with_unit(names[column]);
+    if (axis != kNoAxis && axis != column) return true;
+  }
+  return false;
+}
+
 }  // namespace raycone

@@ -15,4 +15,7 @@ using Columns = std::array<std::size_t, 3>;  // of x, y and z, from 0
 // "point" and "pos" ("POINT_X"), and nothing is returned where an axis has no column, or several.
 [[nodiscard]] std::optional<Columns> named_columns(const std::vector<std::string_view>& names);
 
+// Whether one of the first three is the letter of another axis than that of its place, as x is in "id,x,y".
+[[nodiscard]] bool names_axis_elsewhere(const std::vector<std::string_view>& names);
+
 }  // namespace raycone

@@ -112,13 +112,14 @@ std::string mismatch(std::size_t names, std::size_t fields) {
 
 std::string quoted(std::string_view name) { return "'" + excerpt(name) + "'"; }
 
-// Of three columns people mean these; of more, the first may be a number of the row, or a time.
+// Of three columns people mean these, unless one is named after another axis; of more, the first may be a number of the
+// row, or a time.
 std::string doubt_about(const std::vector<std::string_view>& names, const std::vector<std::string_view>& fields,
                         char delimiter) {
   const std::size_t found = without_empty_ends(fields);
-  if (found <= 3) return "";
+  if (found <= 3 && !names_axis_elsewhere(names)) return "";
   const bool are_names = names.size() >= 3 && fit(names, fields, delimiter);  // and no title
-  return "the first three of " + counted(found, "column") +
+  return (found > 3 ? "the first three of " + counted(found, "column") : "the columns") +
          (are_names ? ", " + quoted(names[0]) + ", " + quoted(names[1]) + " and " + quoted(names[2]) + "," : "") +
          " are taken for x, y and z, as no names tell; --columns takes others";
 }

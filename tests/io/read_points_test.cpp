@@ -224,8 +224,21 @@ TEST_F(ReadPoints, HeadersThatLeaveOpenWhichColumnsAreMeantAreWarnedAbout) {
             "the first three of 4 columns are taken for x, y and z, as no names tell; --columns takes others");
 }
 
+TEST_F(ReadPoints, HeadersOfThreeColumnsThatNameAnAxisElsewhereAreWarnedAbout) {
+  for (const std::string header : {"id x y", "X Z height", "t x[mm] y[mm]"}) {
+    const std::unique_ptr<PointReader> reader = open(header + "\n1 2 3\n-4 .5 6e-3\n");
+    EXPECT_EQ(read_all(*reader), kTwo) << header;
+    ASSERT_EQ(reader->warnings().size(), 1U) << header;
+    EXPECT_EQ(reader->warnings()[0].name, "columns");
+  }
+  const std::unique_ptr<PointReader> reader = open("id,x,y\n1,2,3\n-4,.5,6e-3\n");
+  EXPECT_EQ(read_all(*reader), kTwo);
+  EXPECT_EQ(reader->warnings().at(0).text,
+            "the columns, 'id', 'x' and 'y', are taken for x, y and z, as no names tell; --columns takes others");
+}
+
 TEST_F(ReadPoints, HeadersOfThreeColumnsLeaveNothingOpen) {
-  for (const char* const header : {"tx ty tz", "Scan of part 7", "a b c d e"}) {
+  for (const char* const header : {"tx ty tz", "Scan of part 7", "a b c d e", "x y height"}) {
     const std::unique_ptr<PointReader> reader = open(std::string(header) + "\n1 2 3\n-4 .5 6e-3\n");
     EXPECT_EQ(read_all(*reader), kTwo);
     EXPECT_TRUE(reader->warnings().empty()) << header;

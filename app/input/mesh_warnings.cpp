@@ -30,6 +30,10 @@ Warning reversed_warning(const MeshDefects& defects, Orient orient) {
                           " a negative volume" + help(orient, one ? "turns it outward" : "turns them outward")};
 }
 
+const char* hint_at_turning(Orient orient) {
+  return orient == Orient::kAuto ? "" : ", --orient auto where faces are reversed";
+}
+
 }  // namespace
 
 std::vector<Warning> warnings_about(const MeshDefects& defects, Orient orient) {
@@ -79,10 +83,15 @@ Warning weld_collapsed(std::uint64_t faces, double distance) {
                                 (faces == 1 ? "it" : "them")};
 }
 
-bool should_have_inside(const Box& box, const PlacedLattice& lattice) {
+bool may_have_inside(const Box& box) {
   for (int axis = 0; axis < 3; ++axis) {
     if (box.lower[axis] == box.upper[axis]) return false;
   }
+  return true;
+}
+
+bool should_have_inside(const Box& box, const PlacedLattice& lattice) {
+  if (!may_have_inside(box)) return false;
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 place;
     for (int axis = 0; axis < 3; ++axis) place[axis] = (corner >> axis & 1) != 0 ? box.upper[axis] : box.lower[axis];
@@ -110,7 +119,7 @@ std::optional<Warning> tolerance_not_kept(double tolerance, double bound) {
 Warning nothing_inside(const Rule& rule, Orient orient, const Box& box, const PlacedLattice& lattice) {
   constexpr double kFew = 4.0;  // so few voxels along a mesh are hardly meant
   const std::string nothing = "no sample is inside by the rule " + name_of(rule);
-  const char* const by_turning = orient == Orient::kAuto ? "" : ", --orient auto where faces are reversed";
+  const char* const by_turning = hint_at_turning(orient);
   const double length = longest_side(box), spacing = lattice.grid.least_spacing();
   if (length < kFew * spacing) {
     return {"empty", nothing + ": the mesh is " + with_digits(length, 3) + " long, and samples are " +
@@ -118,6 +127,11 @@ Warning nothing_inside(const Rule& rule, Orient orient, const Box& box, const Pl
                          by_turning};
   }
   return {"empty", nothing + "; a finer lattice helps where the mesh is thin" + by_turning};
+}
+
+Warning no_point_inside(const Rule& rule, Orient orient) {
+  return {"empty", "no point is inside by the rule " + name_of(rule) + "; more points help where the mesh is thin" +
+                       hint_at_turning(orient)};
 }
 
 }  // namespace raycone

@@ -27,8 +27,11 @@ namespace raycone {
 // `unorientable`, `walls`, in this order, those that apply to meshes that were turned: of several, the counts added up.
 [[nodiscard]] std::vector<Warning> warnings_about(const OrientationCounts& counts);
 
-// Whether no inside sample of `lattice` says something about the mesh: the mesh has a volume to be found (`box`, its
-// own, is not flat), and the lattice reaches around it but for a voxel.
+// Whether a mesh in `box` has a volume to be found: the box is not flat.
+[[nodiscard]] bool may_have_inside(const Box& box);
+
+// Whether no inside sample of `lattice` says something about the mesh in `box`: may_have_inside(box), and the lattice
+// reaches around it but for a voxel.
 [[nodiscard]] bool should_have_inside(const Box& box, const PlacedLattice& lattice);
 
 // `tolerance`, where values are promised within `bound` only: 0 of closed meshes. A tolerance that counts as 0 asks for
@@ -37,5 +40,8 @@ namespace raycone {
 
 // `empty`, of a mesh in `box` that was turned so.
 [[nodiscard]] Warning nothing_inside(const Rule& rule, Orient orient, const Box& box, const PlacedLattice& lattice);
+
+// `empty`, of a mesh that was turned so, where points are drawn in its box or near its surface.
+[[nodiscard]] Warning no_point_inside(const Rule& rule, Orient orient);
 
 }  // namespace raycone

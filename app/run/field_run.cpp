@@ -68,6 +68,7 @@ void FieldRun::evaluate(const PlacedLattice& lattice, const LatticeBlock& block,
 
 void FieldRun::evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>* done) {
   run_.report.tally += timed(run_.report.seconds.evaluate, [&] { return evaluator_.evaluate(points, samples_, done); });
+  look_for_inside();
   look_for_largest_bound();
   draw_.offer(points, samples_.numbers());
 }

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "app/input/mesh_warnings.h"
 #include "app/input/run_limits.h"
 #include "app/input/written_files.h"
 #include "app/process/stopwatch.h"
@@ -24,6 +25,7 @@
 #include "app/samples/disk_space.h"
 #include "app/samples/sampled_points.h"
 #include "core/data/coordinate_precision.h"
+#include "core/data/triangle_mesh.h"
 #include "io/fields/field_writer.h"
 #include "io/files/file_error.h"
 #include "io/files/read_file.h"
@@ -189,6 +191,13 @@ void evaluate_points(const PointsCommand& command, PointWork& work, MeshRun& run
   }
 }
 
+// Whether no inside point says something about the mesh. Given points may be anywhere; of a few, all may miss.
+bool should_have_inside(const PointsCommand& command, const TriangleMesh& mesh) {
+  constexpr std::uint64_t kMany = 1000;
+  return command.sample && !command.sample->bounds && points_off_surface(*command.sample) >= kMany &&
+         may_have_inside(bounding_box(mesh));
+}
+
 }  // namespace
 
 RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
@@ -205,8 +214,12 @@ RunReport run_points(const PointsCommand& command, const RunLimits& limits) {
                         [&] { return draw_points(report.mesh, mesh, *command.sample, drawn_precision(command)); });
   }
 
+  const bool is_empty_if_none_inside = should_have_inside(command, mesh);
   prepare(command, std::move(mesh), parts ? &*parts : nullptr, run, work);
   evaluate_points(command, work, run);
+  if (is_empty_if_none_inside && work.fields->found_nothing_inside()) {
+    run.warn(no_point_inside(command.field.rule, command.mesh.orient));
+  }
   work.fields->finish(std::numeric_limits<double>::infinity());
   if (work.labels) work.labels->finish();
   timed(report.seconds.write, [&] { work.writer->finish(); });

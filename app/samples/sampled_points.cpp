@@ -59,6 +59,15 @@ bool draws_on_surface(const SampleRequest& request) {
                              [](const SampleGroup& group) { return std::holds_alternative<SurfaceSamples>(group); });
 }
 
+std::uint64_t points_off_surface(const SampleRequest& request) {
+  std::uint64_t points = 0;
+  for (const SampleGroup& group : request.groups) {
+    if (!std::holds_alternative<SurfaceSamples>(group))
+      points += std::visit([](const auto& g) { return g.count; }, group);
+  }
+  return points;
+}
+
 std::unique_ptr<PointReader> draw_points(const std::string& name, const TriangleMesh& mesh,
                                          const SampleRequest& request, CoordinatePrecision precision) {
   const Box box = widened(request.bounds.value_or(bounding_box(mesh)), request.padding);

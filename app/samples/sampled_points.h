@@ -1,6 +1,7 @@
 // Points that the tool draws, in place of a file of them.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 
@@ -19,5 +20,8 @@ namespace raycone {
 
 // Whether some of the points lie on the surface, so that they have normals and faces.
 [[nodiscard]] bool draws_on_surface(const SampleRequest& request);
+
+// How many lie elsewhere: in the box, or near the surface.
+[[nodiscard]] std::uint64_t points_off_surface(const SampleRequest& request);
 
 }  // namespace raycone

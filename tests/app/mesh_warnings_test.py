@@ -120,6 +120,23 @@ def check_empty(directory):
         expect(named_on(done.stderr, path) == ["reversed"], "reversed.obj", f"{options}: {done.stderr}")
     done = run("points", path, "-", "--field", "inside", input="0.5 0.5 0.5\n")
     expect(named_on(done.stderr, path) == ["reversed"], "reversed.obj", f"points: {done.stderr}")
+    # Drawn points are where the mesh is, unless a box is given. A few may all miss it.
+    drawn = os.path.join(directory, "e.npz")
+    for options, expected in ((["uniform=900,near=100:0.1"], ["reversed", "empty"]),
+                              (["near=1000:0.1", "--field", "sdf"], ["reversed", "empty"]),
+                              (["uniform=900,near=100:0.1", "--strict", "--orient", "flip"], []),
+                              (["uniform=999,surface=999"], ["reversed"]),
+                              (["uniform=1000", "--bounds", "5,5,5,6,6,6"], ["reversed"]),
+                              (["uniform=1000", "--field", "winding"], ["reversed"]),
+                              (["surface=1000"], ["reversed"])):
+        done = run("points", path, "-o", drawn, "--sample", *options)
+        expect(done.returncode == 0, "reversed.obj", f"{options}: {done.stderr}")
+        expect(named_on(done.stderr, path) == expected, "reversed.obj", f"{options}: {done.stderr}")
+    flat = os.path.join(directory, "flat.obj")
+    with open(flat, "w", encoding="utf-8") as file:
+        file.write("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    done = run("points", flat, "-o", drawn, "--sample", "uniform=1000", "--rule", "threshold=2", "--field", "inside")
+    expect(named_on(done.stderr, flat) == [], "flat.obj", done.stderr)
     # Where units differ, that is what is told, and not what helps fine lattices.
     small = os.path.join(directory, "small.obj")
     with open(small, "w", encoding="utf-8") as file:

@@ -84,6 +84,7 @@ class Documents(unittest.TestCase):
 
     def test_commands_of_the_formats_print_what_they_say(self):
         formats = dict(sections("docs/formats.md"))
+        self.run_section("Lattices", formats["Lattices"], {"sh": 1, "text": 1})
         self.run_section("Fields", formats["Fields"], {"sh": 1, "text": 1})
         self.run_section("Output", formats["Output"], {"sh": 5, "text": 5})
 

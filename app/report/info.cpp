@@ -57,7 +57,7 @@ std::string info_text(const MeshInfo& info, const CostedLattices& costed, int th
   table.row("faces", grouped(info.faces));
   if (info.skipped_faces > 0) table.row("skipped faces", grouped(info.skipped_faces) + " of fewer than three corners");
   table.row("vertices", grouped(info.vertices) + ", after welding " + grouped(info.welded_vertices));
-  if (!info.unit.empty()) table.row("unit", info.unit);
+  if (!info.unit.empty()) table.row("unit of the file", info.unit);
   table.row("components", grouped(s.components));
   table.row("surface", s.closed() ? "closed" : "open");
   table.row("exterior edges", grouped(s.exterior_edges));

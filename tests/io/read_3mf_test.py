@@ -226,6 +226,8 @@ class Values(unittest.TestCase):
                 file.write(package(model(TETRAHEDRON, ITEM, attributes)))
             result = subprocess.run([RAYCONE, "info", self.path, "--json"], capture_output=True, text=True)
             self.assertEqual(json.loads(result.stdout)["unit"], unit)
+            result = subprocess.run([RAYCONE, "info", self.path, "--scale", "25.4"], capture_output=True, text=True)
+            self.assertRegex(result.stdout, f"(?m)^ +unit of the file +{unit}$")
         lattice = [RAYCONE, "lattice", self.path, "-o", self.path + ".csv", "--resolution", "3"]
         report = self.path + ".json"
         words = [*lattice, "--report", report, "--field", "label", "--parts", "group", "--quiet"]

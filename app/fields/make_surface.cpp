@@ -18,7 +18,7 @@ namespace raycone {
 namespace {
 
 // What is inside must be something that a surface can go around.
-void check_inside(const ChosenInput& input, const NodeSet& inside, const SurfaceOptions& options) {
+void check_inside(const MeshToClose& input, const NodeSet& inside, const SurfaceOptions& options) {
   const std::string rule = name_of(options.rule);
   const bool may_turn = input.orient != Orient::kAuto;
   if (inside.empty()) {
@@ -99,10 +99,9 @@ EvaluatorOptions options_for(const Accuracy& accuracy, const std::vector<Exterio
 struct PointEvaluators {
   WindingNumberEvaluator fine, rough;
 
-  PointEvaluators(const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges, const NodeSet& inside,
-                  const Rule& rule)
-      : fine(mesh, options_for(for_points(kTolerance, points_in(inside)), edges)),
-        rough(mesh, options_for(for_points(tolerance_for_sides(rule), points_in(inside)), edges)) {}
+  PointEvaluators(const MeshToClose& input, const NodeSet& inside, const Rule& rule)
+      : fine(input.mesh, options_for(for_points(kTolerance, points_in(inside)), input.edges)),
+        rough(input.mesh, options_for(for_points(tolerance_for_sides(rule), points_in(inside)), input.edges)) {}
 
  private:
   static constexpr double kTolerance = 1e-10;  // moves points in holes by less than a millionth of a voxel, as a rule
@@ -114,53 +113,62 @@ struct PointEvaluators {
   }
 };
 
-}  // namespace
-
-MadeSurface make_surface(const ChosenInput& input, const TriangleMesh& mesh, const std::vector<ExteriorEdge>& edges,
-                         const Lattice& lattice, const SurfaceOptions& options, std::uint64_t memory,
-                         std::atomic<std::uint64_t>* done) {
-  const std::string& name = input.name;
-  check_memory(name, node_set_bytes(lattice), memory);
-  const Accuracy for_sides{.tolerance = tolerance_for_sides(options.rule),
-                           .samples = static_cast<double>(whole(lattice).size()),
-                           .sides_only = true};
-  std::optional<WindingNumberEvaluator> evaluator(std::in_place, mesh, options_for(for_sides, edges));
-  Tally tally;
-  NodeSet inside = nodes_inside(*evaluator, options.rule, lattice, done, &tally);
-  Terms terms = evaluator->terms();
-  if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(mesh), options.thickness);
-  check_inside(input, inside, options);
-  std::optional<PointEvaluators> at_points;
-  if (!edges.empty()) {  // values of closed meshes are exact anyway
-    evaluator.reset();   // what it held is free for those that follow
-    at_points.emplace(mesh, edges, inside, options.rule);
-  }
-  const FineAndRough evaluators =
-      at_points ? FineAndRough(at_points->fine, at_points->rough) : FineAndRough(*evaluator);
-  const SurfaceInput made_of{mesh, evaluators, inside, options};
-  FinishedSurface closed = with_surface_errors(name, options, [&] {
+// The mesh itself where that does, else a contour, where `memory` does for one.
+FinishedSurface finished_surface(const std::string& name, const SurfaceInput& made_of, std::uint64_t memory) {
+  return with_surface_errors(name, made_of.options, [&] {
     std::optional<FinishedSurface> itself = mesh_as_surface(made_of);
     if (itself) return *std::move(itself);
-    check_memory(name, surface_bytes(inside, mesh.triangles.size()), memory);
+    check_memory(name, surface_bytes(made_of.inside, made_of.mesh.triangles.size()), memory);
     return closed_surface(made_of);
   });
-  MadeSurface made{std::move(closed.surface), {}, warnings_about(closed, options), tally, {}};
-  if (options.at_stage) options.at_stage("measuring");
-  const SurfaceFaces faces = closed.own ? SurfaceFaces::kOfMesh : SurfaceFaces::kOfContour;
+}
+
+// Compares the surface with the mesh: sets its report, and warns of what it leaves out. `own`: of FinishedSurface.
+void measure(const SurfaceInput& made_of, std::optional<OwnFaces> own, MadeSurface& made) {
+  const auto& [mesh, evaluators, inside, options] = made_of;
+  const Lattice& lattice = inside.lattice();
+  const SurfaceFaces faces = own ? SurfaceFaces::kOfMesh : SurfaceFaces::kOfContour;
   const double farthest = farthest_kept(mesh, lattice, faces, options.precision);
   DroppedSamples samples(made.surface, inside, options.thickness, farthest + options.thickness + options.simplify,
-                         closed.own ? std::move(closed.own->held) : std::vector<bool>());
+                         own ? std::move(own->held) : std::vector<bool>());
   const DroppedArea dropped = dropped_area(mesh, samples);
   made.report = report_of(made.surface, measure_surface(made.surface, mesh, lattice), dropped);
   ThinParts thin;
-  if (closed.own) {
-    thin = {.of_all = closed.own->left_out_of_all, .lost = closed.own->left_out};
+  if (own) {
+    thin = {.of_all = own->left_out_of_all, .lost = own->left_out};
   } else if (dropped.is_some) {
     thin = thin_parts(mesh, {evaluators.rough, options.rule}, samples);
   }
   if (const std::optional<Warning> warning = warning_about(thin)) made.warnings.push_back(*warning);
-  if (at_points) terms += at_points->fine.terms(), terms += at_points->rough.terms();
-  made.terms = terms;
+}
+
+}  // namespace
+
+MadeSurface make_surface(const MeshToClose& input, const Lattice& lattice, const SurfaceOptions& options,
+                         std::uint64_t memory, std::atomic<std::uint64_t>* done) {
+  check_memory(input.name, node_set_bytes(lattice), memory);
+  MadeSurface made;
+  const Accuracy for_sides{.tolerance = tolerance_for_sides(options.rule),
+                           .samples = static_cast<double>(whole(lattice).size()),
+                           .sides_only = true};
+  std::optional<WindingNumberEvaluator> at_nodes(std::in_place, input.mesh, options_for(for_sides, input.edges));
+  NodeSet inside = nodes_inside(*at_nodes, options.rule, lattice, done, &made.tally);
+  made.terms = at_nodes->terms();
+  if (options.thickness > 0.0) insert_near(inside, DistanceEvaluator(input.mesh), options.thickness);
+  check_inside(input, inside, options);
+  std::optional<PointEvaluators> at_points;
+  if (!input.edges.empty()) {  // values of closed meshes are exact anyway
+    at_nodes.reset();          // what it held is free for those that follow
+    at_points.emplace(input, inside, options.rule);
+  }
+  const FineAndRough evaluators = at_points ? FineAndRough(at_points->fine, at_points->rough) : FineAndRough(*at_nodes);
+  const SurfaceInput made_of{input.mesh, evaluators, inside, options};
+  FinishedSurface finished = finished_surface(input.name, made_of, memory);
+  made.surface = std::move(finished.surface);
+  made.warnings = warnings_about(finished, options);
+  if (options.at_stage) options.at_stage("measuring");
+  measure(made_of, std::move(finished.own), made);
+  if (at_points) made.terms += at_points->fine.terms(), made.terms += at_points->rough.terms();
   return made;
 }
 

@@ -25,20 +25,20 @@ struct MadeSurface {
   Terms terms;                    // that were summed for them and for the surface
 };
 
-// What the user has chosen, so that errors advise something else.
-struct ChosenInput {
-  std::string name;  // of the mesh's file
+// What the surface is of, and what the user has chosen, so that errors advise something else. Both must stay meanwhile.
+struct MeshToClose {
+  const TriangleMesh& mesh;
+  const std::vector<ExteriorEdge>& edges;  // of `mesh`
+  std::string name;                        // of its file
   Orient orient = Orient::kKeep;
   bool like_grid = false;  // the lattice is that of --like
 };
 
-// The surface between the inside and the outside nodes of `lattice`, by winding numbers of `mesh`; it has been checked.
-// `edges`: the exterior edges of `mesh`. `done`, where given, grows by one per node. Throws
-// InputError (nothing is inside, or the inside reaches the lattice's border), LimitError (`memory`, bytes, does not do
-// for the nodes or, as soon as these are known, for the surface; or numbers do not do for it), SurfaceFailure.
-[[nodiscard]] MadeSurface make_surface(const ChosenInput& input, const TriangleMesh& mesh,
-                                       const std::vector<ExteriorEdge>& edges, const Lattice& lattice,
-                                       const SurfaceOptions& options, std::uint64_t memory,
-                                       std::atomic<std::uint64_t>* done = nullptr);
+// The surface between the inside and the outside nodes of `lattice`, by winding numbers of the mesh; it has been
+// checked. `done`, where given, grows by one per node. Throws InputError (nothing is inside, or the inside reaches the
+// lattice's border), LimitError (`memory`, bytes, does not do for the nodes or, as soon as these are known, for the
+// surface; or numbers do not do for it), SurfaceFailure.
+[[nodiscard]] MadeSurface make_surface(const MeshToClose& input, const Lattice& lattice, const SurfaceOptions& options,
+                                       std::uint64_t memory, std::atomic<std::uint64_t>* done = nullptr);
 
 }  // namespace raycone

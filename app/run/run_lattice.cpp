@@ -81,11 +81,14 @@ TriangleMesh solid_of(const LatticeCommand& command, MeshRun& run, const Triangl
     const Lattice lattice = solid_lattice(command, *run.report.lattice);
     SurfaceOptions options{command.field.rule};
     options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
-    const ChosenInput input{.name = run.report.mesh,
+    const std::vector<ExteriorEdge> edges = exterior_edges(mesh);
+    const MeshToClose input{.mesh = mesh,
+                            .edges = edges,
+                            .name = run.report.mesh,
                             .orient = command.mesh.orient,
                             .like_grid = std::holds_alternative<GridReference>(command.lattice)};
-    MadeSurface made = make_surface(input, mesh, exterior_edges(mesh), lattice, options, run.limits().memory(),
-                                    run.start_progress(sample_count(lattice)));
+    MadeSurface made =
+        make_surface(input, lattice, options, run.limits().memory(), run.start_progress(sample_count(lattice)));
     run.report.surface = made.report;
     // How its faces are merged does not concern distances.
     for (const Warning& warning : made.warnings) {

@@ -59,9 +59,10 @@ RunReport run_surface(const SurfaceCommand& command, const RunLimits& limits) {
                          vertex_precision(command.format)};
   options.at_stage = [&run](const char* stage) { run.set_stage(stage); };
   std::atomic<std::uint64_t>* const done = run.start_progress(report.samples);
-  const ChosenInput input{.name = report.mesh, .orient = command.mesh.orient, .like_grid = grid != nullptr};
-  MadeSurface made = timed(report.seconds.evaluate,
-                           [&] { return make_surface(input, mesh, edges, lattice, options, limits.memory(), done); });
+  const MeshToClose input{
+      .mesh = mesh, .edges = edges, .name = report.mesh, .orient = command.mesh.orient, .like_grid = grid != nullptr};
+  MadeSurface made =
+      timed(report.seconds.evaluate, [&] { return make_surface(input, lattice, options, limits.memory(), done); });
   report.surface = made.report;
   report.tally = made.tally;
   report.terms = made.terms;

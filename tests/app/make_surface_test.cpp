@@ -21,11 +21,15 @@ namespace {
 
 constexpr std::uint64_t kAllMemory = std::numeric_limits<std::uint64_t>::max();
 
-MadeSurface made(const SurfaceOptions& options) {
-  const TriangleMesh mesh = sphere(8);
-  const Lattice lattice{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 11}};
-  return make_surface({"m"}, mesh, exterior_edges(mesh), lattice, options, kAllMemory);
+MadeSurface made_of(const TriangleMesh& mesh, const Lattice& lattice, const SurfaceOptions& options = {},
+                    std::uint64_t memory = kAllMemory) {
+  return make_surface({mesh, exterior_edges(mesh), "m"}, lattice, options, memory);
 }
+
+// Around the unit sphere.
+const Lattice kCoarse{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 11}};
+
+MadeSurface made(const SurfaceOptions& options) { return made_of(sphere(8), kCoarse, options); }
 
 // A band of a sphere, which needs a contour: what is inside is a ring.
 TriangleMesh ring() {
@@ -49,8 +53,7 @@ TEST(MakeSurface, IsRefusedWhereItsMemoryDoesNotDo) {
   options.at_stage = [&](const char*) { ++stages; };
   const auto make = [&](double share, const TriangleMesh& of) {
     malloc_trim(0);  // as check_memory() does: what other tests have freed is no longer in use then
-    return make_surface({"m"}, of, exterior_edges(of), lattice, options,
-                        static_cast<std::uint64_t>(memory_in_use() + share * predicted));
+    return made_of(of, lattice, options, static_cast<std::uint64_t>(memory_in_use() + share * predicted));
   };
   const std::string refused = error_text<LimitError>([&] { return make(0.5, mesh); });
   EXPECT_TRUE(refused.starts_with("m: needs about ")) << refused;
@@ -76,17 +79,13 @@ TEST(MakeSurface, TellsThatNothingIsSimplified) {
 
 TEST(MakeSurface, TellsThatADistanceIsTooSmallToSimplify) {
   SurfaceOptions options;
-  const auto made = [&](const SurfaceOptions& as) {
-    const Lattice lattice{{-1.25, -1.25, -1.25}, {0.25, 0.25, 0.25}, {0, 0, 0}, {11, 11, 11}};
-    return make_surface({"m"}, ring(), exterior_edges(ring()), lattice, as, kAllMemory);
-  };
   options.simplify = 1e-9;  // 16 margins of 2^-30 voxels of 0.25 are 3.7e-9
-  const MadeSurface left = made(options);
+  const MadeSurface left = made_of(ring(), kCoarse, options);
   ASSERT_EQ(left.warnings.size(), 1U);
   EXPECT_EQ(left.warnings[0].name, "not-simplified");
   EXPECT_NE(left.warnings[0].text.find("rounding"), std::string::npos);
   options.simplify = 1e-8;
-  EXPECT_TRUE(made(options).warnings.empty());
+  EXPECT_TRUE(made_of(ring(), kCoarse, options).warnings.empty());
 }
 
 // A post, of which another box, turned inside out, takes all but a foot and a slice on top, between the nodes.
@@ -94,7 +93,7 @@ TEST(MakeSurface, TellsThatPiecesAreLost) {
   const auto warnings = [](double top) {
     const TriangleMesh mesh = joined(box_mesh({0, 0, 0}, {1, 1, 3}), reversed(box_mesh({-1, -1, 1}, {2, 2, top})));
     const Lattice lattice{{-1.4, -1.4, -0.4}, {0.25, 0.25, 0.25}, {0, 0, 0}, {15, 15, 16}};
-    return make_surface({"m"}, mesh, exterior_edges(mesh), lattice, {}, kAllMemory).warnings;
+    return made_of(mesh, lattice).warnings;
   };
   ASSERT_EQ(warnings(2.97).size(), 1U);
   EXPECT_EQ(warnings(2.97)[0].name, "thin-parts");
@@ -114,7 +113,7 @@ TEST(MakeSurface, ReportsNoHolesOfAClosedMesh) {
   const Lattice lattice{
       {kFar + 1.84375, kFar - 0.21875, kFar + 0.71875}, {kVoxel, kVoxel, kVoxel}, {0, 0, 0}, {9, 20, 15}};
   SurfaceOptions options{.rule = *rule_from_name("odd"), .simplify = 3e-4};
-  const MadeSurface made = make_surface({"m"}, mesh, exterior_edges(mesh), lattice, options, kAllMemory);
+  const MadeSurface made = made_of(mesh, lattice, options);
   EXPECT_EQ(made.report.hole_area, 0.0);
   EXPECT_GT(made.report.max_distance, options.simplify) << "or nothing was taken apart";
 }
@@ -123,7 +122,7 @@ TEST(MakeSurface, TellsWhatItsNodesTook) {
   TriangleMesh open = box_mesh({0, 0, 0}, {1, 1, 1});
   open.triangles.pop_back();
   const Lattice lattice{{-0.5, -0.5, -0.5}, {0.25, 0.25, 0.25}, {0, 0, 0}, {9, 9, 9}};
-  const MadeSurface made = make_surface({"m"}, open, exterior_edges(open), lattice, {}, kAllMemory);
+  const MadeSurface made = made_of(open, lattice);
   const WindingNumberEvaluator evaluator(open);
   std::vector<std::uint8_t> sides(static_cast<std::size_t>(whole(lattice).size()));
   const Tally tally = evaluator.evaluate_sides({}, lattice, whole(lattice), sides);
@@ -142,7 +141,7 @@ TEST(MakeSurface, TellsThatWallsAreLostNextToTheSurface) {
     const TriangleMesh mesh = joined(box_mesh({0, 0, 0}, {1, 1, 1}), box_mesh({0.3, 0.4, 0.9}, {0.7, 0.41, top}));
     SurfaceOptions options;
     options.merge_planes = false;  // else the mesh's own faces are kept
-    return make_surface({"m"}, mesh, exterior_edges(mesh), lattice, options, kAllMemory).warnings;
+    return made_of(mesh, lattice, options).warnings;
   };
   ASSERT_EQ(warnings(1.3).size(), 1U);
   EXPECT_EQ(warnings(1.3)[0].name, "thin-parts");
@@ -157,7 +156,7 @@ TEST(MakeSurface, DoesNotTellOfNextToNoArea) {
     const TriangleMesh mesh = joined(box_mesh({0, 0, 0}, {1, 1, 1}), post);
     SurfaceOptions options;
     options.merge_planes = false;  // else the mesh's own faces are kept
-    return make_surface({"m"}, mesh, exterior_edges(mesh), lattice, options, kAllMemory).warnings;
+    return made_of(mesh, lattice, options).warnings;
   };
   ASSERT_EQ(warnings(1e-3).size(), 1U);
   EXPECT_EQ(warnings(1e-3)[0].text.find("as a whole"), std::string::npos);
@@ -175,7 +174,7 @@ TEST(MakeSurface, TellsThatPartsAreTooThin) {
     for (const Triangle& t : plate.triangles) mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
     SurfaceOptions options;
     options.thickness = thickness;
-    const MadeSurface made = make_surface({"m"}, mesh, exterior_edges(mesh), lattice, options, kAllMemory);
+    const MadeSurface made = made_of(mesh, lattice, options);
     return made.warnings.empty() ? std::string() : line_of(made.warnings.at(0));
   };
   EXPECT_EQ(names(0.5, 0.0), "");

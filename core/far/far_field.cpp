@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "core/boundary/solid_angles.h"
-#include "core/data/even_places.h"
 
 namespace raycone {
 namespace {
@@ -21,6 +20,14 @@ struct Costs {
 // Of such a tree: what 50^3 lattices and 20 000 to 10^6 points of two soups and four CAD models took with AVX-512. The
 // degree hardly depends on the tolerance: nodes are taken as soon as the highest one serves.
 constexpr Costs kAtPoint{1.7, 28.0}, kOnLattice{1.8, 50.0};
+
+// Place number n, n >= 1, of a sequence that fills a unit cube evenly, however many there are: multiples of the powers
+// of 1 / 1.2207..., without whole parts (Roberts 2018). Coordinates in [0, 1).
+Vec3 even_place(std::size_t n) {
+  const double count = static_cast<double>(n);
+  const Vec3 turns = count * Vec3{0.8191725133961645, 0.6710436067037893, 0.5497004779019703};
+  return turns - Vec3{std::floor(turns.x), std::floor(turns.y), std::floor(turns.z)};
+}
 
 }  // namespace
 

@@ -45,7 +45,7 @@ RoughBox RoughSums::look_at(const SampleBox& samples, double each, const RoughBo
   RoughBox box{samples, nodes_of(rows_, samples)};
   const SmallNodes small = samples.size() > kLargest ? SmallNodes::kUnopened : SmallNodes::kOpened;
   box.cover = rough_cover_in(blocks_.tree(), blocks_.extents(), rows_.box_of(samples),
-                             {box.nodes.bend(), box.nodes.growth()}, each, small, around ? &around->cover : nullptr);
+                             {{box.nodes.bend(), box.nodes.growth()}, each, small}, around ? &around->cover : nullptr);
   add_at_nodes(box, around);
   return box;
 }

@@ -79,13 +79,13 @@ constexpr double kInverse = (1 + 0x1p-30) / (4 * std::numbers::pi);  // of 4 pi
 class RoughWalk {
  public:
   RoughWalk(const SourceTree& tree, std::span<const TriangleExtent> extents, const Box& box,
-            const Interpolation& interpolation, double each, SmallNodes small_nodes)
+            const RoughCoverOptions& options)
       : tree_(tree),
         extents_(extents),
         box_(box),
-        interpolation_(interpolation),
-        each_(each),
-        small_(small_nodes == SmallNodes::kUnopened ? kSmall * norm(box.upper - box.lower) : 0.0) {}
+        interpolation_(options.interpolation),
+        each_(options.each),
+        small_(options.small_nodes == SmallNodes::kUnopened ? kSmall * norm(box.upper - box.lower) : 0.0) {}
 
   // With all that is below it.
   void take_node(std::uint32_t number) {
@@ -188,7 +188,7 @@ class RoughWalk {
   const SourceTree& tree_;
   std::span<const TriangleExtent> extents_;
   const Box& box_;
-  const Interpolation& interpolation_;
+  Interpolation interpolation_;
   double each_, small_;
   RoughCover result_;
 };
@@ -196,9 +196,8 @@ class RoughWalk {
 }  // namespace
 
 RoughCover rough_cover_in(const SourceTree& tree, std::span<const TriangleExtent> extents, const Box& box,
-                          const Interpolation& interpolation, double each, SmallNodes small_nodes,
-                          const RoughCover* around) {
-  RoughWalk walk(tree, extents, box, interpolation, each, small_nodes);
+                          const RoughCoverOptions& options, const RoughCover* around) {
+  RoughWalk walk(tree, extents, box, options);
   if (around) {
     for (const auto& [node, degree] : around->near.expansions) walk.take_node(node);
     for (const std::uint32_t node : around->unopened) walk.take_node(node);

@@ -54,13 +54,18 @@ struct RoughCover {
 // How nodes that come into the box and are much smaller are taken.
 enum class SmallNodes { kOpened, kUnopened };
 
-// Nodes as expansions, and triangles, or nothing in their place, each of which is off by twice `each` at most in all
-// points of the box. Of what `around`, the cover of a box around this one, has near or unopened; of all triangles
-// without. `extents`: of the tree's triangles. How far all are off together is known only afterwards, so that sums may
-// be too rough for some samples.
+struct RoughCoverOptions {
+  Interpolation interpolation;
+  double each;  // what any node or triangle may be off by, about
+  SmallNodes small_nodes;
+};
+
+// Nodes as expansions, and triangles, or nothing in their place, each of which is off by twice `options.each` at most
+// in all points of the box. Of what `around`, the cover of a box around this one, has near or unopened; of all
+// triangles without. `extents`: of the tree's triangles. How far all are off together is known only afterwards, so that
+// sums may be too rough for some samples.
 [[nodiscard]] RoughCover rough_cover_in(const SourceTree& tree, std::span<const TriangleExtent> extents, const Box& box,
-                                        const Interpolation& interpolation, double each, SmallNodes small_nodes,
-                                        const RoughCover* around);
+                                        const RoughCoverOptions& options, const RoughCover* around);
 
 struct CoverKernels {
   SharedCornersKernel shared_corners;

@@ -36,6 +36,8 @@ struct Tables {
   std::array<std::array<double, kP + 1>, kP + 1> choose{};  // sqrt of (2n over 2k)
 
   Tables();
+  void set_harmonics();
+  void set_norms();
   void set_left_out();
   [[nodiscard]] double weight(int n, int m) const { return factorial[index(n + m)] * factorial[index(n - m)]; }
 };
@@ -46,6 +48,12 @@ Tables::Tables() {
   double_factorial[0] = 1;
   for (std::size_t n = 1; n < double_factorial.size(); ++n)
     double_factorial[n] = double_factorial[n - 1] * static_cast<double>(2 * n - 1);
+  set_harmonics();
+  set_norms();
+  set_left_out();
+}
+
+void Tables::set_harmonics() {
   for (int m = 0; m <= kP; ++m) {
     double corner = 1, b = 1, b_before = 0;
     for (int i = 1; i <= m; ++i) corner /= 2 * i;
@@ -61,6 +69,9 @@ Tables::Tables() {
       b = b_next;
     }
   }
+}
+
+void Tables::set_norms() {
   const auto regular_at = [&](int n, int m) { return m > n ? 0.0 : regular[multipole_index(n, std::abs(m))]; };
   for (int n = 0; n <= kP; ++n) {
     const auto i = index(n);
@@ -80,7 +91,6 @@ Tables::Tables() {
       c = c * ((2 * n - 2 * k) * (2 * n - 2 * k - 1)) / ((2 * k + 1) * (2 * k + 2));
     }
   }
-  set_left_out();
 }
 
 // Gauss's rule of G points leaves out (G!)^4 / ((2G + 1) (2G)!^3) times a derivative of order 2G.
@@ -227,8 +237,9 @@ double longest_side_of(std::span<const SolidTriangle> triangles) {
 
 }  // namespace
 
-Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit, double radius,
-                       int order, double precision, const MomentKernel& kernel) {
+Multipole multipole_of(std::span<const SolidTriangle> triangles, const MultipoleBall& ball, int order, double precision,
+                       const MomentKernel& kernel) {
+  const auto& [centre, unit, radius] = ball;
   const double scale = 1 / unit, longest = kUp * scale * longest_side_of(triangles);
   const LeftOut left_out(longest, radius);
   const std::size_t points = left_out.points_for(order, precision);

@@ -36,13 +36,18 @@ struct Multipole {
   std::array<double, kMultipoleOrder + 1> error{};
 };
 
-// Of the triangles, each of which is at most `radius` units away from the centre at every point; radius <= 1. `unit` is
-// a power of two; 1 <= order <= kMultipoleOrder. Where sides of triangles are short, integrals along them are off by
-// about `precision` of what they may be, seen from two units away, which `error` includes; 0: by no more than what
-// rounds. The result does not depend on the kernel.
-[[nodiscard]] Multipole multipole_of(std::span<const SolidTriangle> triangles, const Vec3& centre, double unit,
-                                     double radius, int order, double precision,
-                                     const MomentKernel& kernel = moment_kernel(SimdLevel::kBest));
+// A ball, in the unit of an expansion about its centre.
+struct MultipoleBall {
+  Vec3 centre;
+  double unit;    // a power of two
+  double radius;  // in units, at most 1
+};
+
+// Of triangles in the ball; 1 <= order <= kMultipoleOrder. Where sides of triangles are short, integrals along them are
+// off by about `precision` of what they may be, seen from two units away, which `error` includes; 0: by no more than
+// what rounds. The result does not depend on the kernel.
+[[nodiscard]] Multipole multipole_of(std::span<const SolidTriangle> triangles, const MultipoleBall& ball, int order,
+                                     double precision, const MomentKernel& kernel = moment_kernel(SimdLevel::kBest));
 
 // Adds an expansion of the same order that is about a centre that lies `shift` away, in units of the sum, and whose
 // unit is `ratio` such units, a power of two. The result does not depend on the kernel.

@@ -236,7 +236,7 @@ Multipole SourceTree::expansion_of(const SourceNode& node) const {
   if (!(node.radius > kSmallest)) return {detail_.order, {}, {}, {}};
   const std::span own = triangles().subspan(node.begin, node.own_end - node.begin);
   constexpr double kPrecision = 0x1p-22;  // of the tolerance: what is near stays as it is
-  return multipole_of(own, node.centre, node.unit, node.radius / node.unit, detail_.order, kPrecision * tolerance_,
+  return multipole_of(own, {node.centre, node.unit, node.radius / node.unit}, detail_.order, kPrecision * tolerance_,
                       moments_);
 }
 

@@ -103,12 +103,14 @@ TEST(SourceTree, EveryDegreeErrsByNoMoreThanItsBound) {
   }
 }
 
+constexpr MultipoleBall kUnitBall{{}, 1.0, 1.0};
+
 // A small triangle at (1, 0, 0) from the centre that faces it: the potential of degree n is n P_n(x / r) A / 4 pi r^(n
 // + 1), and nowhere larger than on the x axis.
 TEST(SourceTree, BoundsOfADipoleAreThoseOfItsPotential) {
   const double size = 1e-4;  // so much, relative, is what it differs from a dipole by
   const SolidTriangle t = solid_faces({{{1, 0, 0}, {1, size, 0}, {1, 0, size}}, {{0, 1, 2}}}).triangles.front();
-  const Multipole multipole = multipole_of({&t, 1}, {}, 1.0, 1.0, kMultipoleOrder, 0);
+  const Multipole multipole = multipole_of({&t, 1}, kUnitBall, kMultipoleOrder, 0);
   const MultipoleBounds bounds = bounds_of(multipole);
   const double area = size * size / 2;
   for (int n = kMultipoleOrder; n >= 1; --n) {
@@ -146,9 +148,9 @@ TEST(SourceTree, ShiftedExpansionsAreThoseAboutTheOtherCentre) {
   const auto all = solid_faces(small_triangles(random, 12, 0.2)).triangles;
   const Vec3 from{0.5, 0.4, 0.6}, to{0.25, 0.5, 0.5};
   for (const int order : {16, kMultipoleOrder, 5}) {
-    const Multipole there = multipole_of(all, to, 4.0, 0.6, order, 0);
+    const Multipole there = multipole_of(all, {to, 4.0, 0.6}, order, 0);
     Multipole shifted{order, {}, {}, {}};
-    add_shifted(shifted, multipole_of(all, from, 2.0, 0.9, order, 0), 0.25 * (from - to), 0.5);
+    add_shifted(shifted, multipole_of(all, {from, 2.0, 0.9}, order, 0), 0.25 * (from - to), 0.5);
     EXPECT_LE(largest_part_of_error(there, shifted), 1) << order;
     EXPECT_LT(*std::ranges::max_element(shifted.error), 1e-13) << order;  // some u times what recurrences may grow by
   }
@@ -159,10 +161,10 @@ TEST(SourceTree, ShiftedExpansionsAreThoseAboutTheOtherCentre) {
 TEST(SourceTree, MomentsDoNotDependOnTheOrder) {
   test::Random random(7);
   const auto all = solid_faces(small_triangles(random, 12, 0.9)).triangles;
-  const Vec3 centre{0.5, 0.5, 0.5};
-  const Multipole high = multipole_of(all, centre, 1.0, 1.0, kMultipoleOrder, 0);
+  const MultipoleBall ball{{0.5, 0.5, 0.5}, 1.0, 1.0};
+  const Multipole high = multipole_of(all, ball, kMultipoleOrder, 0);
   for (int order = 1; order < kMultipoleOrder; ++order) {
-    const Multipole low = multipole_of(all, centre, 1.0, 1.0, order, 0);
+    const Multipole low = multipole_of(all, ball, order, 0);
     EXPECT_LE(largest_part_of_error(low, high), 1) << order;
   }
 }
@@ -172,10 +174,10 @@ TEST(SourceTree, MomentsByFewPointsErrByNoMoreThanTheirBound) {
   for (const double size : {0.1, 0.3, 0.6}) {
     const TriangleMesh mesh{{{0.9, 0, 0.2}, {0.9, size, 0.2}, {0.9 - size, 0, 0.2}}, {{0, 1, 2}}};
     const auto one = solid_faces(mesh).triangles;
-    const Multipole exact = multipole_of(one, {}, 1.0, 1.0, kMultipoleOrder, 0);
+    const Multipole exact = multipole_of(one, kUnitBall, kMultipoleOrder, 0);
     double closest = 0;  // an error comes to its bound
     for (const double precision : {1e-2, 1e-5, 1e-8, 1e-11}) {
-      const double part = largest_part_of_error(multipole_of(one, {}, 1.0, 1.0, kMultipoleOrder, precision), exact);
+      const double part = largest_part_of_error(multipole_of(one, kUnitBall, kMultipoleOrder, precision), exact);
       EXPECT_LE(part, 1) << size << ' ' << precision;
       closest = std::max(closest, part);
     }
@@ -191,7 +193,7 @@ TEST(SourceTree, MomentsAndShiftsAreTheSameForEverySimdLevel) {
     for (const int order : {16, kMultipoleOrder, 5}) {
       const auto moments = [&](SimdLevel level) {
         const MomentKernel kernel = moment_kernel(level);
-        const Multipole here = multipole_of(all, {0.5, 0.5, 0.5}, 1.0, 1.0, order, 0, kernel);
+        const Multipole here = multipole_of(all, {{0.5, 0.5, 0.5}, 1.0, 1.0}, order, 0, kernel);
         Multipole sum = here;
         add_shifted(sum, here, {0.3, -0.2, 0.4}, 0.5, kernel);
         return sum;

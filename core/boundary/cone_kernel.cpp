@@ -64,6 +64,27 @@ HWY_INLINE LaneMask is_not_near(const EdgeFactors& f) {
   return hn::Gt(magnitude(f), hn::Mul(hn::Set(d, kNearEdge), f.product_of_s));
 }
 
+template <class Rays>
+struct ProjectedChunk {
+  Chunk chunk;
+  Rays rays;
+
+  ProjectedChunk(const Vec3& from, std::span<const ChainStep> steps, const SampleTile& samples)
+      : chunk(from, steps), rays(chunk, samples) {}
+};
+
+// A chunk and the samples from i on, whose products it is multiplied onto.
+template <class Rays>
+struct Stage {
+  const ProjectedChunk<Rays>& of;
+  std::size_t i;
+  ChunkView<Rays>& view;
+
+  HWY_INLINE void view_vertex(const SampleTile& samples, std::size_t n) const {
+    view.set_vertex(of.chunk, of.rays, samples, n, i);
+  }
+};
+
 // A few edges of a chunk.
 struct EdgeRange {
   std::size_t begin, end;
@@ -78,8 +99,10 @@ struct Trial {
 // What multiply_block() multiplies, but at each of the samples without the edges that have no factor there. In a tile
 // of one ray these are not even tried, and a value must not depend on the other samples of its tile.
 template <class Rays>
-HWY_INLINE Trial product_without_level_edges(const ProductTile& products, const Rays& rays, std::size_t i,
-                                             const ChunkView<Rays>& view, const EdgeRange& block) {
+HWY_INLINE Trial product_without_level_edges(const ProductTile& products, const Stage<Rays>& stage,
+                                             const EdgeRange& block) {
+  const auto& [of, i, view] = stage;
+  const Rays& rays = of.rays;
   Trial trial{load(products, i), hn::FirstN(d, hn::Lanes(d))};
   ProductLanes& z = trial.z;
   for (std::size_t n = block.begin; n < block.end; ++n) {
@@ -95,11 +118,12 @@ HWY_INLINE Trial product_without_level_edges(const ProductTile& products, const 
   return trial;
 }
 
-// What multiply_block() does, factor by factor, for those of the samples from i on whose bit in `trusted` is not set.
+// What multiply_block() does, factor by factor, for those of the samples whose bit in `trusted` is not set.
 template <class Rays>
-HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, const Rays& rays,
-                                     const SampleTile& samples, std::size_t i, const ChunkView<Rays>& view,
+HWY_NOINLINE void multiply_carefully(ProductTile& products, const SampleTile& samples, const Stage<Rays>& stage,
                                      const EdgeRange& block, std::uint64_t trusted) {
+  const auto& [of, i, view] = stage;
+  const auto& [chunk, rays] = of;
   for (std::size_t n = block.begin; n < block.end; ++n) {
     if (rays.is_without_factor(n, i)) continue;
     const EdgeFactors factors = factors_of(rays, view, n);
@@ -121,27 +145,6 @@ HWY_NOINLINE void multiply_carefully(ProductTile& products, const Chunk& chunk, 
     }
   }
 }
-
-template <class Rays>
-struct ProjectedChunk {
-  Chunk chunk;
-  Rays rays;
-
-  ProjectedChunk(const Vec3& from, std::span<const ChainStep> steps, const SampleTile& samples)
-      : chunk(from, steps), rays(chunk, samples) {}
-};
-
-// A chunk and the samples from i on, whose products it is multiplied onto.
-template <class Rays>
-struct Stage {
-  const ProjectedChunk<Rays>& of;
-  std::size_t i;
-  ChunkView<Rays>& view;
-
-  HWY_INLINE void view_vertex(const SampleTile& samples, std::size_t n) const {
-    view.set_vertex(of.chunk, of.rays, samples, n, i);
-  }
-};
 
 // The stages of a chain: each chunk with all samples, one chunk after the other. The vertices of the stage at hand have
 // been viewed.
@@ -198,7 +201,7 @@ class Stages {
 template <class Rays>
 HWY_INLINE void multiply_block(ProductTile& products, const SampleTile& samples, const Stage<Rays>& stage,
                                const Stage<Rays>* next, const EdgeRange& block) {
-  const auto& [chunk, rays] = stage.of;
+  const Rays& rays = stage.of.rays;
   const std::size_t viewed = next ? next->of.chunk.edges : 0;
   ProductLanes z = load(products, stage.i);
   LaneMask trusted = hn::FirstN(d, hn::Lanes(d));
@@ -213,9 +216,9 @@ HWY_INLINE void multiply_block(ProductTile& products, const SampleTile& samples,
   if (HWY_LIKELY(hn::AllTrue(d, trusted))) {
     store(scaled(z), products, stage.i);
   } else {
-    const Trial trial = product_without_level_edges(products, rays, stage.i, stage.view, block);
+    const Trial trial = product_without_level_edges(products, stage, block);
     if (!hn::AllTrue(d, trial.trusted)) {
-      multiply_carefully(products, chunk, rays, samples, stage.i, stage.view, block, bits_of(trial.trusted));
+      multiply_carefully(products, samples, stage, block, bits_of(trial.trusted));
     }
     store_trusted(trial.z, trial.trusted, products, stage.i);
   }

@@ -36,11 +36,25 @@ RowRange hull(const RowRange& a, const RowRange& b, const RowRange& c) {
   return {std::min({a.begin, b.begin, c.begin}), std::max({a.end, b.end, c.end})};
 }
 
-// Calls visit(j, k) for the rows that the triangle may concern, of those in its box.
+// Where a vertex, or the box of a triangle, lies among the rows.
+struct BoxRows {
+  RowRange js, ks;  // along y, z
+};
+
+BoxRows rows_at(const Vec3& v, const LatticeRows& rows) {
+  return {equal_range(v.y, rows.ys, rows.samples_per_unit.y), equal_range(v.z, rows.zs, rows.samples_per_unit.z)};
+}
+
+BoxRows hull(const BoxRows& a, const BoxRows& b, const BoxRows& c) {
+  return {hull(a.js, b.js, c.js), hull(a.ks, b.ks, c.ks)};
+}
+
+// Calls visit(j, k) for the rows that the triangle may concern, of those `in_box`.
 template <class Visit>
-void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& rows, const RowRange& js,
-                const RowRange& ks, const Visit& visit) {
+void visit_rows(const Corners3& corners, const LatticeRows& rows, const BoxRows& in_box, const Visit& visit) {
   constexpr std::uint32_t kFew = 6;  // rows, not worth a section
+  const auto& [a, b, c] = corners;
+  const auto& [js, ks] = in_box;
   if (std::max(js.size(), ks.size()) <= kFew) {
     for (std::uint32_t k = ks.begin; k < ks.end; ++k) {
       for (std::uint32_t j = js.begin; j < js.end; ++j) visit(j, k);
@@ -60,24 +74,14 @@ void visit_rows(const Vec3& a, const Vec3& b, const Vec3& c, const LatticeRows& 
   }
 }
 
-// Where a vertex lies among the rows.
-struct VertexRows {
-  RowRange y, z;
-};
-
-VertexRows rows_at(const Vec3& v, const LatticeRows& rows) {
-  return {equal_range(v.y, rows.ys, rows.samples_per_unit.y), equal_range(v.z, rows.zs, rows.samples_per_unit.z)};
-}
-
-// One triangle, whose corners lie there among the rows. Most meet no row: their corners are not fetched.
-void scan(const TriangleMesh& mesh, const Triangle& t, const VertexRows& at_a, const VertexRows& at_b,
-          const VertexRows& at_c, const LatticeRows& rows, LatticeSums::Collector& collector) {
-  const RowRange ks = hull(at_a.z, at_b.z, at_c.z), js = hull(at_a.y, at_b.y, at_c.y);
-  if (static_cast<int>(ks.empty()) | static_cast<int>(js.empty())) return;
+// One triangle. Most meet no row: their corners are not fetched.
+void scan(const TriangleMesh& mesh, const Triangle& t, const BoxRows& in_box, const LatticeRows& rows,
+          LatticeSums::Collector& collector) {
+  if (static_cast<int>(in_box.ks.empty()) | static_cast<int>(in_box.js.empty())) return;
   const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
   if (rows.xs.front() > std::max({a.x, b.x, c.x})) return;
   const TrianglePlane plane(a, b, c);
-  visit_rows(a, b, c, rows, js, ks, [&](std::uint32_t j, std::uint32_t k) {
+  visit_rows({a, b, c}, rows, in_box, [&](std::uint32_t j, std::uint32_t k) {
     const Row row{rows.ys[j], rows.zs[k], rows.xs, rows.samples_per_unit.x};
     collector.add(k * rows.ys.size() + j, triangle_crossing(a, b, c, row, &plane));
   });
@@ -86,13 +90,13 @@ void scan(const TriangleMesh& mesh, const Triangle& t, const VertexRows& at_a, c
 // All of them. Where a vertex lies is looked up once per vertex, not per triangle: most triangles of a fine mesh meet
 // no row, and need nothing else.
 void scan_all(const TriangleMesh& mesh, const LatticeRows& rows, LatticeSums& sums) {
-  std::vector<VertexRows> at(mesh.vertices.size());
+  std::vector<BoxRows> at(mesh.vertices.size());
   parallel_for_each(at.size(), kVerticesPerTask, [&](std::size_t i) { at[i] = rows_at(mesh.vertices[i], rows); });
   parallel_for(mesh.triangles.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
     LatticeSums::Collector collector(sums);
     for (std::size_t i = begin; i < end; ++i) {
       const Triangle& t = mesh.triangles[i];
-      scan(mesh, t, at[t[0]], at[t[1]], at[t[2]], rows, collector);
+      scan(mesh, t, hull(at[t[0]], at[t[1]], at[t[2]]), rows, collector);
     }
     collector.finish();
   });
@@ -109,7 +113,7 @@ void scan_slab(const TriangleMesh& mesh, const LatticeRows& rows, const OrderedS
         const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
         const auto [lower, upper] = std::minmax({a[slab.axis], b[slab.axis], c[slab.axis]});
         if (lower > across.back() || upper < across.front()) continue;
-        scan(mesh, t, rows_at(a, rows), rows_at(b, rows), rows_at(c, rows), rows, collector);
+        scan(mesh, t, hull(rows_at(a, rows), rows_at(b, rows), rows_at(c, rows)), rows, collector);
       }
     }
     collector.finish();

@@ -130,7 +130,7 @@ bool CellPolygons::find(std::uint32_t cell) {
   cell_ = cell;
   count_ = diagonal_count_ = 0;
   spare_points_.clear();
-  if (!find_loop() || has_needles() || !find_runs() || !find_ends()) return false;
+  if (!find_loop() || has_needles() || !find_planes() || !find_ends()) return false;
   if (!holds_diagonal() || !holds_face_points()) return false;
   if (has_apex_ ? !cone_runs() : !cut_off_runs()) return false;
   find_diagonals();
@@ -180,6 +180,13 @@ bool CellPolygons::is_in_plane(const EdgePoint& plane, const Vec3& p) const {
   return std::abs(dot(creases_.all_creases().normal_of(plane.source), p - plane.position)) <= kInPlane * unit_;
 }
 
+// How many of the planes it is in.
+std::size_t CellPolygons::planes_through(const Vec3& p) const {
+  const auto planes = std::span(planes_).first(run_count_);
+  const auto count = std::ranges::count_if(planes, [&](const EdgePoint* plane) { return is_in_plane(*plane, p); });
+  return static_cast<std::size_t>(count);
+}
+
 bool CellPolygons::is_near_node(const Vec3& p) const {
   const SurfaceCell& cell = cells_.cells()[cell_];
   const Vec3 low = p - cells_.corner(cell, 0), high = p - cells_.corner(cell, kuhn::kCorners - 1);
@@ -190,8 +197,7 @@ bool CellPolygons::is_near_node(const Vec3& p) const {
   return true;
 }
 
-// Each is in the plane of a source. Of several sources, planes through nodes would have them on different sides.
-bool CellPolygons::find_runs() {
+void CellPolygons::find_runs() {
   const auto loop = std::span(loop_).first(loop_size_);
   const auto start =
       face_count_ == 0 ? std::size_t{0}
@@ -214,12 +220,17 @@ bool CellPolygons::find_runs() {
   }
   if (face_count_ > 0) runs_[run_count_].add(start);
   ++run_count_;
+}
+
+// Each run is in the plane of a source. Of several sources, planes through nodes would have it on different sides.
+bool CellPolygons::find_planes() {
+  find_runs();
   for (std::size_t n = 0; n < run_count_; ++n) {
     const Run& run = runs_[n];
     planes_[n] = run.plane;
     bool is_of_one = true;
-    for (std::size_t i = 0; i < run.size; ++i) {
-      const LoopCorner& corner = loop_[run.corners[i]];
+    for (const std::uint8_t number : run.on_loop()) {
+      const LoopCorner& corner = loop_[number];
       if (!is_in_plane(*run.plane, corner.position)) return false;
       is_of_one = is_of_one && (!corner.point || corner.point->source == run.plane->source);
     }
@@ -230,8 +241,8 @@ bool CellPolygons::find_runs() {
 
 // Of an edge.
 bool CellPolygons::has_corner_at_node(const Run& run) const {
-  return std::any_of(run.corners.begin(), run.corners.begin() + static_cast<std::ptrdiff_t>(run.size),
-                     [&](std::uint8_t n) { return loop_[n].point && is_near_node(loop_[n].position); });
+  return std::ranges::any_of(run.on_loop(),
+                             [&](std::uint8_t n) { return loop_[n].point && is_near_node(loop_[n].position); });
 }
 
 // Where sections follow fine creases, these are in several planes, too. Creases end in the cell nowhere, or at one
@@ -246,16 +257,13 @@ bool CellPolygons::find_ends() {
   has_apex_ = ends.one.has_value();
   if (!has_apex_) return true;
   apex_ = *ends.one;
-  return std::all_of(planes_.begin(), planes_.begin() + static_cast<std::ptrdiff_t>(run_count_),
-                     [&](const EdgePoint* plane) { return is_in_plane(*plane, apex_); });
+  return planes_through(apex_) == run_count_;
 }
 
 bool CellPolygons::holds_diagonal() {
   const SurfaceCell& cell = cells_.cells()[cell_];
   if (cell.is_inside(0) == cell.is_inside(kuhn::kCorners - 1)) return true;
-  const EdgePoint& point = edge_points_[cell.edge(kuhn::kCorners - 1)];
-  return std::any_of(planes_.begin(), planes_.begin() + static_cast<std::ptrdiff_t>(run_count_),
-                     [&](const EdgePoint* plane) { return is_in_plane(*plane, point.position); });
+  return planes_through(edge_points_[cell.edge(kuhn::kCorners - 1)].position) > 0;
 }
 
 // Those of faces within the cell are where two of the planes meet.
@@ -263,10 +271,7 @@ bool CellPolygons::holds_face_points() {
   for (std::size_t face = kuhn::kFacesBetweenCells; face < kuhn::kFaces.size(); ++face) {
     const auto [first, count] = face_points_.find(cell_, face);
     for (std::uint32_t point = first; point < first + count; ++point) {
-      const Vec3& p = face_points_.positions()[point];
-      const auto planes = std::count_if(planes_.begin(), planes_.begin() + static_cast<std::ptrdiff_t>(run_count_),
-                                        [&](const EdgePoint* plane) { return is_in_plane(*plane, p); });
-      if (planes < 2) return false;
+      if (planes_through(face_points_.positions()[point]) < 2) return false;
       spare_points_.push_back(point);
     }
   }
@@ -278,7 +283,7 @@ PlanePolygon& CellPolygons::add_polygon(const Run& run) {
   PlanePolygon& polygon = polygons_[count_++];
   polygon.source = run.plane->source;
   polygon.size = 0;
-  for (std::size_t i = 0; i < run.size; ++i) polygon.add(loop_[run.corners[i]].vertex);
+  for (const std::uint8_t corner : run.on_loop()) polygon.add(loop_[corner].vertex);
   return polygon;
 }
 
@@ -294,8 +299,8 @@ bool CellPolygons::cone_runs() {
 
 bool CellPolygons::is_one_plane(const Run& a, const Run& b) const {
   const auto holds = [&](const EdgePoint& plane, const Run& run) {
-    return std::all_of(run.corners.begin(), run.corners.begin() + static_cast<std::ptrdiff_t>(run.size),
-                       [&](std::uint8_t corner) { return is_in_plane(plane, loop_[corner].position); });
+    return std::ranges::all_of(run.on_loop(),
+                               [&](std::uint8_t corner) { return is_in_plane(plane, loop_[corner].position); });
   };
   return a.plane->source == b.plane->source || (holds(*a.plane, b) && holds(*b.plane, a));
 }
@@ -316,7 +321,7 @@ bool CellPolygons::cut_off_runs() {
     Run& before = neighbour(run_count_ - 1);
     const Run& behind = neighbour(1);
     if (&before != &behind) {
-      for (std::size_t i = 0; i < behind.size; ++i) before.add(behind.corners[i]);
+      for (const std::uint8_t corner : behind.on_loop()) before.add(corner);
     }
     const std::size_t gone = (n + 1) % run_count_, merged = (n + run_count_ - 1) % run_count_;
     std::array<Run, kMostRuns> left{};

@@ -103,13 +103,15 @@ class CellPolygons {
     std::size_t size = 0;
 
     void add(std::size_t corner) { corners[size++] = static_cast<std::uint8_t>(corner); }
+    [[nodiscard]] std::span<const std::uint8_t> on_loop() const { return std::span(corners).first(size); }
   };
 
   bool find_loop();
   [[nodiscard]] bool has_needles() const;
   [[nodiscard]] bool is_near_node(const Vec3& p) const;
   [[nodiscard]] bool has_corner_at_node(const Run& run) const;
-  bool find_runs();
+  void find_runs();
+  bool find_planes();
   bool find_ends();
   bool holds_diagonal();
   bool holds_face_points();
@@ -119,6 +121,7 @@ class CellPolygons {
   PlanePolygon& add_polygon(const Run& run);
   void find_diagonals();
   [[nodiscard]] bool is_in_plane(const EdgePoint& plane, const Vec3& p) const;
+  [[nodiscard]] std::size_t planes_through(const Vec3& p) const;
 
   const SurfaceCells& cells_;
   std::span<const EdgePoint> edge_points_;

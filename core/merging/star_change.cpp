@@ -55,6 +55,46 @@ Vec3 across_of(const Vec3& n) {
   return 1.0 / std::sqrt(dot(across, across)) * across;
 }
 
+// Whether is_found(node) for any node within `distance` of a face, and in a box: row by row along the axis that the
+// face is steepest to.
+template <class IsFound>
+bool any_node_near(const Corners3& face, double distance, const Lattice& lattice, const Box& box,
+                   const IsFound& is_found) {
+  const auto first_from = [&](int a, double x) {
+    return static_cast<std::int64_t>(std::ceil(lattice.index_at(a, std::max(x, box.lower[a])) - kDoubt));
+  };
+  const auto last_to = [&](int a, double x) {
+    return static_cast<std::int64_t>(std::floor(lattice.index_at(a, std::min(x, box.upper[a])) + kDoubt));
+  };
+  const auto range = [&](int a) {
+    const auto [low, high] = std::minmax({face[0][a], face[1][a], face[2][a]});
+    return std::array{first_from(a, low - distance), last_to(a, high + distance)};
+  };
+  const Vec3 normal = cross(face[1] - face[0], face[2] - face[0]);
+  const std::array sizes{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
+  const int axis = static_cast<int>(std::ranges::max_element(sizes) - sizes.begin());
+  const double length = std::sqrt(dot(normal, normal));
+  const double reach = distance * length / std::abs(normal[axis]) + kDoubt * lattice.spacing[axis];
+  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+  const auto [u_begin, u_end] = range(u);
+  const auto [v_begin, v_end] = range(v);
+  for (std::int64_t j = v_begin; j <= v_end; ++j) {
+    for (std::int64_t i = u_begin; i <= u_end; ++i) {
+      Vec3 node;
+      node[u] = lattice.coordinate(u, i);
+      node[v] = lattice.coordinate(v, j);
+      const double on_plane =
+          face[0][axis] - (normal[u] * (node[u] - face[0][u]) + normal[v] * (node[v] - face[0][v])) / normal[axis];
+      const std::int64_t last = last_to(axis, on_plane + reach);
+      for (std::int64_t k = first_from(axis, on_plane - reach); k <= last; ++k) {
+        node[axis] = lattice.coordinate(axis, k);
+        if (is_found(node)) return true;
+      }
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
 StarChange::StarChange(const Vec3& vertex, const std::vector<Vec3>& ring) : vertex_(vertex), ring_(ring) {
@@ -172,47 +212,14 @@ Box StarChange::box() const {
   return widened(box, kSlack * longest_side(box));
 }
 
-// Nodes near each face after, row by row along the axis that it is steepest to. Where there is much between the faces,
-// most of these rows are beside it: then a node below the vertex is found sooner. Along the direction, steep faces may
-// be far from each other: nodes beyond all of them are between none.
+// Where there is much between the faces, most nodes near those after are beside it: then a node below the vertex is
+// found sooner. Along the direction, steep faces may be far from each other: nodes beyond all of them are between none.
 bool StarChange::passes_node(const Lattice& lattice, double distance) const {
   if (distance > lattice.least_spacing() && passes_node_below_vertex(lattice)) return true;
   const Box all = box();
-  const auto first_from = [&](int a, double x) {
-    return static_cast<std::int64_t>(std::ceil(lattice.index_at(a, std::max(x, all.lower[a])) - kDoubt));
-  };
-  const auto last_to = [&](int a, double x) {
-    return static_cast<std::int64_t>(std::floor(lattice.index_at(a, std::min(x, all.upper[a])) + kDoubt));
-  };
-  for (const Corners3& c : after_) {
-    const Vec3 normal = cross(c[1] - c[0], c[2] - c[0]);
-    const std::array sizes{std::abs(normal.x), std::abs(normal.y), std::abs(normal.z)};
-    const int axis = static_cast<int>(std::ranges::max_element(sizes) - sizes.begin());
-    const double length = std::sqrt(dot(normal, normal));
-    const double reach = distance * length / std::abs(normal[axis]) + kDoubt * lattice.spacing[axis];
-    const auto range = [&](int a) {
-      const auto [low, high] = std::minmax({c[0][a], c[1][a], c[2][a]});
-      return std::array{first_from(a, low - distance), last_to(a, high + distance)};
-    };
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    const auto [u_begin, u_end] = range(u);
-    const auto [v_begin, v_end] = range(v);
-    for (std::int64_t j = v_begin; j <= v_end; ++j) {
-      for (std::int64_t i = u_begin; i <= u_end; ++i) {
-        Vec3 node;
-        node[u] = lattice.coordinate(u, i);
-        node[v] = lattice.coordinate(v, j);
-        const double on_plane =
-            c[0][axis] - (normal[u] * (node[u] - c[0][u]) + normal[v] * (node[v] - c[0][v])) / normal[axis];
-        const std::int64_t last = last_to(axis, on_plane + reach);
-        for (std::int64_t k = first_from(axis, on_plane - reach); k <= last; ++k) {
-          node[axis] = lattice.coordinate(axis, k);
-          if (is_between(node)) return true;
-        }
-      }
-    }
-  }
-  return false;
+  return std::ranges::any_of(after_, [&](const Corners3& face) {
+    return any_node_near(face, distance, lattice, all, [&](const Vec3& node) { return is_between(node); });
+  });
 }
 
 }  // namespace raycone

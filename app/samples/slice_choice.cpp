@@ -167,15 +167,9 @@ Vec3 near_point(const Box& box, const Vec3& origin, const Vec3& normal) {
   return origin;
 }
 
-Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const SliceRequest& request) {
-  Slice slice;
-  PlaneView& view = slice.view;
-  set_directions(view, plane);
-  const Vec3 origin = plane.origin.value_or(box.lower + 0.5 * (box.upper - box.lower));
-  view.origin = origin;
-  const std::vector<Vec3> outline = cut(padded, origin, view.normal);
-  if (outline.empty()) throw UsageError("--origin, --normal: the plane misses the box, see --bounds and --padding");
-  const Vec3 near = near_point(padded, origin, view.normal);
+// Pixels that cover an outline in the plane. `near`: a point of the plane, not far from these. Returns whether the
+// outline is flat.
+bool set_pixels(PlaneView& view, const std::vector<Vec3>& outline, const Vec3& near, const SliceRequest& request) {
   const auto along_right = [&](const Vec3& p) { return dot(p - near, view.right); };
   const auto along_up = [&](const Vec3& p) { return dot(p - near, view.up); };
   const auto [left, right] = std::ranges::minmax(outline, {}, along_right);
@@ -193,12 +187,23 @@ Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const
   };
   view.width = pixels(width);
   view.height = pixels(height);
-  slice.is_flat = width == 0.0 || height == 0.0;
   const std::int64_t padding = pixels_of(request);
   add_pixels(view.width, padding);
   add_pixels(view.height, padding);
   const double margin = static_cast<double>(padding) * view.pixel;
   view.corner = near + (along_right(left) - margin) * view.right + (along_up(bottom) - margin) * view.up;
+  return width == 0.0 || height == 0.0;
+}
+
+Slice choose(const ObliquePlane& plane, const Box& box, const Box& padded, const SliceRequest& request) {
+  Slice slice;
+  PlaneView& view = slice.view;
+  set_directions(view, plane);
+  const Vec3 origin = plane.origin.value_or(box.lower + 0.5 * (box.upper - box.lower));
+  view.origin = origin;
+  const std::vector<Vec3> outline = cut(padded, origin, view.normal);
+  if (outline.empty()) throw UsageError("--origin, --normal: the plane misses the box, see --bounds and --padding");
+  slice.is_flat = set_pixels(view, outline, near_point(padded, origin, view.normal), request);
   slice.plane = "normal " + listed(view.normal, 6) + " through " + listed(origin, 6);
   slice.short_plane = "normal " + listed(view.normal, 3) + " at " + listed(origin, 3);
   return slice;

@@ -153,63 +153,31 @@ TEST(NearVertices, AreNearByTheirDistanceUpToItsRounding) {
 double cpu_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 // A hundred thousand vertices take a second at most; pair by pair they took minutes.
+template <class VertexAt>
+void expect_soon(const char* name, double distance, std::size_t representatives, const VertexAt& vertex_at) {
+  std::vector<Vec3> vertices;
+  for (int i = 0; i < 100'000; ++i) vertices.push_back(vertex_at(i));
+  const double before = cpu_seconds();
+  EXPECT_EQ(representatives_within(vertices, distance).vertices.size(), representatives) << name;
+  EXPECT_LT(cpu_seconds() - before, 20.0) << name;  // sanitizers and busy machines included
+}
+
 TEST(NearVertices, TakeNoLongerWhereTheyAreChosenToCrowd) {
-  struct Case {
-    const char* name;
-    double distance;
-    std::function<Vec3(std::uint32_t)> vertex;
-    std::size_t representatives;
-  };
-  constexpr std::uint32_t kCount = 100'000;
-  const std::vector<Case> cases{
-      {"beyond the range of cells", 1e-10,
-       [](std::uint32_t i) {
-         return Vec3{1e300, 1e300, 1e300 * (1 + i * 1e-9)};
-       },
-       kCount},
-      {"quotients that overflow", 1e-10,
-       [](std::uint32_t i) {
-         return Vec3{1e299 + 1e290 * i, 1e300, 1e300};
-       },
-       kCount},
-      {"one vertex far away", 1e-10,
-       [](std::uint32_t i) {
-         return i == 0 ? Vec3{1e300, 1e300, 1e300} : Vec3{1e-3 * i, 0, 0};
-       },
-       kCount},
-      {"within one distance", 1.0,
-       [](std::uint32_t i) {
-         return Vec3{1e-6 * i, 0.5e-6 * i, 0};
-       },
-       1},
-      {"just too far apart", 1.0,
-       [](std::uint32_t i) {
-         return Vec3{1.0000001 * (i % 50), 1.0000001 * (i / 50 % 50), 1.0000001 * (i / 2500)};
-       },
-       kCount},
-      {"in one plane", 1.0,
-       [](std::uint32_t i) {
-         return Vec3{0, 1.0000001 * (i % 300), 1.0000001 * (i / 300)};
-       },
-       kCount},
-      {"not numbers", 1.0,
-       [](std::uint32_t i) {
-         return Vec3{0, kNaN, 1e-9 * i};
-       },
-       kCount},
-      {"denormal distance", kTiniest,
-       [](std::uint32_t i) {
-         return Vec3{1e-3 * i, 0, 0};
-       },
-       kCount},
-  };
-  for (const Case& one : cases) {
-    std::vector<Vec3> vertices;
-    for (std::uint32_t i = 0; i < kCount; ++i) vertices.push_back(one.vertex(i));
-    const double before = cpu_seconds();
-    EXPECT_EQ(representatives_within(vertices, one.distance).vertices.size(), one.representatives) << one.name;
-    EXPECT_LT(cpu_seconds() - before, 20.0) << one.name;  // sanitizers and busy machines included
-  }
+  constexpr std::size_t kAll = 100'000;
+  expect_soon("beyond the range of cells", 1e-10, kAll, [](int i) {
+    return Vec3{1e300, 1e300, 1e300 * (1 + i * 1e-9)};
+  });
+  expect_soon("quotients that overflow", 1e-10, kAll, [](int i) { return Vec3{1e299 + 1e290 * i, 1e300, 1e300}; });
+  expect_soon("one vertex far away", 1e-10, kAll, [](int i) {
+    return i == 0 ? Vec3{1e300, 1e300, 1e300} : Vec3{1e-3 * i, 0, 0};
+  });
+  expect_soon("within one distance", 1.0, 1, [](int i) { return Vec3{1e-6 * i, 0.5e-6 * i, 0}; });
+  expect_soon("just too far apart", 1.0, kAll, [](int i) {
+    return Vec3{1.0000001 * (i % 50), 1.0000001 * (i / 50 % 50), 1.0000001 * (i / 2500)};
+  });
+  expect_soon("in one plane", 1.0, kAll, [](int i) { return Vec3{0, 1.0000001 * (i % 300), 1.0000001 * (i / 300)}; });
+  expect_soon("not numbers", 1.0, kAll, [](int i) { return Vec3{0, kNaN, 1e-9 * i}; });
+  expect_soon("denormal distance", kTiniest, kAll, [](int i) { return Vec3{1e-3 * i, 0, 0}; });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@ The first two arguments of such a test are the tool and the folder of the projec
 off sys.argv.
 """
 
+import json
 import os
 import subprocess
 import sys
@@ -42,18 +43,34 @@ def read(path):
         return file.read()
 
 
+def read_json(path):
+    return json.loads(read(path))
+
+
+def write(path, content):
+    """Text or bytes; the path."""
+    with open(path, "wb") as file:
+        file.write(content.encode() if isinstance(content, str) else content)
+    return path
+
+
 def run(words, **options):
     return subprocess.run([RAYCONE, *words.split()], capture_output=True, timeout=PATIENCE, **options)
+
+
+def enter_empty_folder(add_cleanup):
+    """It is left, and is gone, after the cleanups that are added."""
+    directory = tempfile.TemporaryDirectory()
+    add_cleanup(directory.cleanup)
+    add_cleanup(os.chdir, "/")
+    os.chdir(directory.name)
 
 
 class CommandCase(unittest.TestCase):
     """Each test in an empty folder of its own."""
 
     def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.addCleanup(os.chdir, "/")
-        os.chdir(directory.name)
+        enter_empty_folder(self.addCleanup)
 
     def works(self, words, **options):
         """Standard output of a run that has nothing to say beside."""
@@ -68,8 +85,8 @@ class CommandCase(unittest.TestCase):
         return result.stderr.decode()
 
     def refused(self, words, status, expected, **options):
-        """With one line, which contains `expected`."""
+        """With one line, which contains `expected`, and nothing else."""
         result = run(words, **options)
-        self.assertEqual(result.returncode, status, (words, result.stderr))
+        self.assertEqual((result.returncode, result.stdout), (status, b""), (words, result.stderr))
+        self.assertRegex(result.stderr, rb"\Araycone: [^\n]*\n\Z", words)
         self.assertIn(expected, result.stderr.decode(errors="replace"), words)
-        self.assertEqual(result.stderr.count(b"\n"), 1, words)

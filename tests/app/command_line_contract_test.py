@@ -15,12 +15,11 @@ import select
 import shutil
 import struct
 import subprocess
-import tempfile
 import termios
 import time
 import unittest
 
-from command_case import MESHES, PATIENCE, RAYCONE, run_tests
+from command_case import MESHES, PATIENCE, RAYCONE, enter_empty_folder, read, read_json, run_tests, write
 
 CUBE = os.path.join(MESHES, "cube.obj")
 
@@ -75,23 +74,23 @@ def run(words, **options):
     return subprocess.run([RAYCONE, *words], capture_output=True, **options)
 
 
+def gltf_triangle(uri, nodes):
+    """A scene of the first node, whose mesh has its corners there."""
+    return json.dumps({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": nodes,
+                       "buffers": [{"byteLength": 36, "uri": uri}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
+                       "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
+                       "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]})
+
+
 class Contract(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.directory = tempfile.TemporaryDirectory()
-        os.chdir(cls.directory.name)
-        with open("points.csv", "w") as file:
-            file.write("0,0,0\n.5,.5,.5\n")
+        enter_empty_folder(cls.addClassCleanup)
+        write("points.csv", "0,0,0\n.5,.5,.5\n")
         for name, content in {"cube.STL.ZST": b"\x28\xb5\x2f\xfd",
                               "compressed": gzip.compress(b"solid"), "cube.ply.gz": gzip.compress(b"ply")}.items():
-            with open(name, "wb") as file:
-                file.write(content)
+            write(name, content)
         assert run(["batch", CUBE, "--out-dir", "done", "--resolution", "3"]).returncode == 0
-
-    @classmethod
-    def tearDownClass(cls):
-        os.chdir("/")
-        cls.directory.cleanup()
 
     def refused(self, words, expected):
         result = run(words)
@@ -157,15 +156,12 @@ class Everywhere(Contract):
             words = ["lattice", CUBE, "--resolution", "3", "--quiet"]
             self.works([*words, "-o", "out." + name])
             piped = run([*words, "-o", "-", "--format", name], text=False)
-            with open("out." + name, "rb") as file:
-                self.assertEqual(piped.stdout, file.read(), name)
+            self.assertEqual(piped.stdout, read("out." + name), name)
 
 
 def write_large_soup(path):
     """Its 9009 boundary edges may round by 1.0002e-12."""
-    with open(path, "w", encoding="ascii") as file:
-        for n in range(3003):
-            file.write("v %d 0 0\nv %d 1 0\nv %d 0 1\nf -3 -2 -1\n" % (n, n, n))
+    write(path, "".join("v %d 0 0\nv %d 1 0\nv %d 0 1\nf -3 -2 -1\n" % (n, n, n) for n in range(3003)))
 
 
 class Tolerances(Contract):
@@ -194,8 +190,7 @@ class Tolerances(Contract):
         box = os.path.join(MESHES, "open_box.obj")
         for tolerance, bound in (("0", 1e-12), ("1e-12", 1e-12), ("1e-11", 1e-11), ("1e-4", 1e-4), ("1", 0.0625)):
             self.works(["lattice", box, *WORKING["lattice"][2:], "--tolerance", tolerance, "--report", "report.json"])
-            with open("report.json", encoding="utf-8") as file:
-                self.assertEqual(json.load(file)["largest_error_bound"], bound)
+            self.assertEqual(read_json("report.json")["largest_error_bound"], bound)
 
     def test_bands_are_numbers_or_all(self):
 
@@ -283,8 +278,7 @@ class Messages(Contract):
             self.assertEqual(result.returncode, 4, result.stderr)
             self.assertIn("precision can hold; see --scale", result.stderr)
         tetrahedron = "v 10000 0 0\nv 10001 0 0\nv 10000 1 0\nv 10000 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n"
-        with open("far.obj", "w") as file:
-            file.write(tetrahedron)
+        write("far.obj", tetrahedron)
         words = ["surface", "far.obj", "--resolution", "12"]
         new_faces = ["--simplify", "none"]
         self.assertIn("see --resolution and --normalize, or write PLY",
@@ -293,18 +287,15 @@ class Messages(Contract):
         self.works([*words, *new_faces, "-o", "far.ply"])
         # A mesh that is its own surface needs no numbers but its own, with flat holes closed, too.
         self.works([*words, "-o", "far.stl"])
-        with open("far.obj", "w") as file:
-            file.write(tetrahedron + "f 1 4 3\n")
+        write("far.obj", tetrahedron + "f 1 4 3\n")
         self.works([*words, "-o", "far.stl"])
         for mesh in (CUBE, os.path.join(os.path.dirname(CUBE), "open_box.obj")):
             self.works(["surface", mesh, "-o", "a.ply", "--scale", "1e-320", "--resolution", "4"])
 
     def test_counts_agree_with_their_nouns(self):
-        with open("one.ply", "wb") as file:
-            file.write(b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\n"
-                       b"property uchar z\nend_header\n\0")
-        with open("one.obj", "w") as file:
-            file.write("v 0 0 0\nf 1 1 2\n")
+        write("one.ply", b"ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty uchar x\nproperty uchar y\n"
+                         b"property uchar z\nend_header\n\0")
+        write("one.obj", "v 0 0 0\nf 1 1 2\n")
         for name, expected in (("one.ply", "1 element 'vertex' announced, but only 1 byte follows"),
                                ("one.obj", "but the file has only 1 vertex")):
             result = run(["info", name])
@@ -319,14 +310,12 @@ class Messages(Contract):
     def test_verification_is_a_phase_of_its_own(self):
         words = [*WORKING["lattice"], "--report", "report.json"]
         self.assertNotIn("verify", self.works(words).stderr)
-        with open("report.json") as file:
-            self.assertEqual(list(json.load(file)["seconds"]), ["read", "prepare", "evaluate", "write", "total"])
+        self.assertEqual(list(read_json("report.json")["seconds"]), ["read", "prepare", "evaluate", "write", "total"])
         teapot = os.path.join(MESHES, "teapot.obj")
         words = ["lattice", teapot, "-o", "out.csv", "--resolution", "8", "--report", "report.json", "--verify", "100",
                  "--threads", "2"]
         self.assertRegex(self.works(words).stderr, r"write [0-9.]+, verify [0-9.]+\) -> ")
-        with open("report.json") as file:
-            seconds = json.load(file)["seconds"]
+        seconds = read_json("report.json")["seconds"]
         self.assertGreater(seconds["verify"], 0.01)  # 100 samples of 6320 triangles at 2.7 us are 1.7 s on one thread
         parts = sum(seconds[name] for name in ("read", "prepare", "evaluate", "write", "verify"))
         self.assertLessEqual(parts, seconds["total"])
@@ -368,9 +357,8 @@ class Limits(Contract):
         self.works(["points", CUBE, "--sample", "uniform=20", "-o", "v.npz", *words])
 
     def test_parts_at_points(self):
-        with open("parts.obj", "w", encoding="ascii") as file:
-            for n in range(5000):
-                file.write("g %d\nv %d 0 0\nv %d 1 0\nv %d 0 1\nf -3 -2 -1\n" % (n, n, n, n))
+        parts = ("g %d\nv %d 0 0\nv %d 1 0\nv %d 0 1\nf -3 -2 -1\n" % (n, n, n, n) for n in range(5000))
+        write("parts.obj", "".join(parts))
         words = ["points", "parts.obj", "--sample", "uniform=5", "-o", "p.npz", "--field", "label", "--parts", "group"]
         self.is_limited([*words, "--memory-limit", "24M"], "needs about [0-9.]+ MB")
         self.works([*words, "--memory-limit", "100M"])
@@ -378,12 +366,7 @@ class Limits(Contract):
     def test_scenes_of_thousands_of_nodes(self):
         """Their JSON takes memory also to be destroyed."""
         nodes = [{"mesh": 0, "children": [n + 1]} for n in range(5000)] + [{"mesh": 0}]
-        with open("many.gltf", "w", encoding="ascii") as file:
-            json.dump({"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": nodes,
-                       "buffers": [{"byteLength": 36, "uri": "data:;base64," + "AAAA" * 12}],
-                       "bufferViews": [{"buffer": 0, "byteLength": 36}],
-                       "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
-                       "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}]}, file)
+        write("many.gltf", gltf_triangle("data:;base64," + "AAAA" * 12, nodes))
         statuses = set()
         for limit in range(10, 60, 2):
             result = run(["info", "many.gltf", "--memory-limit", "%dM" % limit])
@@ -394,8 +377,7 @@ class Limits(Contract):
 
     def test_what_no_lattice_is_like(self):
         os.mkfifo("pipe.vdb")
-        with open("junk.vdb", "w", encoding="ascii") as file:
-            file.write("junk")
+        write("junk.vdb", "junk")
         for grid in ("pipe.vdb", "junk.vdb", "/dev/zero"):
             for more in ([], ["--dry-run"]):
                 result = run(["batch", CUBE, "--out-dir", "like", "--like", grid, *more])
@@ -410,17 +392,11 @@ class Pipes(Contract):
         self.refused(words, "/dev/stdout: is output and report")
 
     def test_an_array_of_meshes_ends_whatever_becomes_of_them(self):
-        with open("scene.gltf", "w", encoding="ascii") as file:
-            json.dump({"asset": {"version": "2.0"}, "buffers": [{"uri": "out.json", "byteLength": 36}],
-                       "bufferViews": [{"buffer": 0, "byteLength": 36}],
-                       "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}],
-                       "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-                       "nodes": [{"mesh": 0}], "scenes": [{"nodes": [0]}]}, file)
+        write("scene.gltf", gltf_triangle("out.json", [{"mesh": 0}]))
         with open("out.json", "wb") as out:
             status = subprocess.run([RAYCONE, "info", CUBE, "scene.gltf", CUBE, "--json"], stdout=out,
                                     stderr=subprocess.DEVNULL, timeout=PATIENCE).returncode
-        with open("out.json", encoding="utf-8") as out:
-            self.assertEqual((status, len(json.load(out))), (1, 2))
+        self.assertEqual((status, len(read_json("out.json"))), (1, 2))
 
     def test_a_mesh_comes_through_a_pipe_that_does_not_wait(self):
         """As some parents leave standard input."""
@@ -429,7 +405,7 @@ class Pipes(Contract):
         process = subprocess.Popen([RAYCONE, "info", "-", "--mesh-format", "obj", "--json"], stdin=theirs,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         os.close(theirs)
-        for line in open(CUBE, "rb"):
+        for line in read(CUBE).splitlines(keepends=True):
             time.sleep(0.01)
             os.write(ours, line)
         os.close(ours)

@@ -12,7 +12,7 @@ import shutil
 import subprocess
 import zipfile
 
-from command_case import PATIENCE, RAYCONE, CommandCase, mesh, numpy_or_skip, read, run, run_tests
+from command_case import PATIENCE, RAYCONE, CommandCase, mesh, numpy_or_skip, read, read_json, run, run_tests, write
 
 numpy = numpy_or_skip()
 CUBE, TEAPOT, OPEN_BOX = map(mesh, ("cube", "teapot", "open_box"))
@@ -42,7 +42,7 @@ class Lattices(DataSets):
         with zipfile.ZipFile("a.npz") as archive:
             self.assertIsNone(archive.testzip())
         values = numpy.load("a.npz")
-        lattice = json.loads(read("a.json"))["lattice"]
+        lattice = read_json("a.json")["lattice"]
         index = numpy.stack([rows[name].astype(int) - first for name, first in zip("ijk", values["index_min"])])
         for name, column in (("w", "w"), ("inside", "inside")):
             self.assertTrue((values[name][tuple(index)] == rows[column]).all(), name)
@@ -103,8 +103,7 @@ class Lattices(DataSets):
 
     def test_what_is_inside_has_a_negative_distance(self):
         """Also where 16 or 32 bits round it to 0."""
-        with open("p.csv", "w") as file:
-            file.write("x,y,z\n" + "".join("0.5,0.5,%g\n" % z for z in (1e-8, 1e-12, 1e-44, 1e-50, 1e-150, 0.25)))
+        write("p.csv", "x,y,z\n" + "".join("0.5,0.5,%g\n" % z for z in (1e-8, 1e-12, 1e-44, 1e-50, 1e-150, 0.25)))
         for dtype in ("f16", "f32", "f64"):
             self.works("points %s p.csv -o p.npz --field sdf,inside --dtype %s" % (CUBE, dtype))
             values = numpy.load("p.npz")
@@ -125,8 +124,7 @@ class Lattices(DataSets):
         self.refused("lattice %s -o d.npz --like points.npz" % CUBE, 2, "has no array 'origin'")
         whole = read("a.npz")
         for cut in (3, 30, 700, len(whole) - 5):
-            with open("cut.npz", "wb") as file:
-                file.write(whole[:cut])
+            write("cut.npz", whole[:cut])
             self.assertEqual(run("lattice %s -o d.npz --like cut.npz" % CUBE).returncode, 2, cut)
 
 
@@ -226,9 +224,8 @@ class ImagesToFollow(DataSets):
     def nrrd(self, space="LPS", steps="(-1,0,0) (0,-2,0) (0,0,.5)", **entries):
         entries = {"dimension": 3, "space": space, "sizes": "3 4 5", "space directions": steps,
                    "space origin": "(1, -1, .5)", **entries}
-        with open("b.nrrd", "w") as file:
-            file.write("NRRD0004\r\n# a comment: with a colon\r\n")
-            file.write("".join("%s: %s\r\n" % entry for entry in entries.items() if entry[1] is not None) + "\r\n")
+        lines = ["%s: %s\r\n" % entry for entry in entries.items() if entry[1] is not None]
+        write("b.nrrd", "NRRD0004\r\n# a comment: with a colon\r\n" + "".join(lines) + "\r\n")
 
     def test_nrrd_of_others(self):
         self.nrrd()
@@ -254,23 +251,19 @@ class ImagesToFollow(DataSets):
                                  ("spacings: 1 2 NaN", "spacings, expected 3 axes"),
                                  ("spacings: 1 2 0", "its axes, expected three directions"),
                                  ("spacings: 1 2 3\naxis mins: 0 0 0", "it has no space directions")):
-            with open("b.nrrd", "w") as file:
-                file.write("NRRD0001\ndimension: 3\nsizes: 3 4 5\n%s\n\n" % entries)
+            write("b.nrrd", "NRRD0001\ndimension: 3\nsizes: 3 4 5\n%s\n\n" % entries)
             self.refused("lattice %s -o c.vdb --like b.nrrd" % CUBE, 2, message)
 
     def test_nifti_of_others(self):
         self.works("lattice %s -o a.nii --voxel-size .25,.5,.125" % CUBE)
         head = bytearray(read("a.nii"))
         head[254:256] = bytes(2)  # no sform, but the qform that says the same
-        with open("q.nii", "wb") as file:
-            file.write(head)
+        write("q.nii", head)
         self.assertEqual(self.lattice_like("q.nii"), self.lattice_like("a.nii"))
         head[252:254] = bytes(2)
-        with open("none.nii", "wb") as file:
-            file.write(head)
+        write("none.nii", head)
         self.refused("lattice %s -o c.vdb --like none.nii" % CUBE, 2, "neither sform nor qform")
-        with open("cut.nii", "wb") as file:
-            file.write(head[:300])
+        write("cut.nii", head[:300])
         self.assertEqual(run("lattice %s -o c.vdb --like cut.nii" % CUBE).returncode, 2)
         try:
             import nibabel
@@ -296,7 +289,7 @@ class Provenance(DataSets):
             self.assertEqual(about["options"], given)
             self.assertEqual((about["rule"], about["fields"]), ("abs=0.5", ["inside"]))
             self.assertEqual(about["transform"][0], [2, 0, 0, 0])
-            report = json.loads(read("r.json"))
+            report = read_json("r.json")
             self.assertEqual(report["command"], (command + " -o a.npz --quiet").split())
             self.assertEqual(report["options"], given)
             for key in ("sha256", "transform"):
@@ -309,8 +302,7 @@ class Provenance(DataSets):
         usual = " --tolerance .1e-9 --scale 1.0 --orient keep --weld exact --field winding"
         for command, more in (("lattice %s --resolution 3" % CUBE, " --dtype f32"),
                               ("points %s %s" % (CUBE, "p.csv"), " --dtype f64")):
-            with open("p.csv", "w", encoding="ascii") as file:
-                file.write("0,0,0\n1,2,3\n")
+            write("p.csv", "0,0,0\n1,2,3\n")
             self.works(command + " -o a.npz")
             whole = read("a.npz")
             self.works(command + usual + more + " -o a.npz")
@@ -458,22 +450,19 @@ class Meshes(DataSets):
                 self.assertTrue(0.9 < most <= 1 + 1e-15, most)
         self.works("slice %s -o a.png --size 8 --normalize cube --report r.json --scale 4 --up y-to-z" % CUBE)
         expected = [[1, 0, 0, -0.5], [0, 0, -1, 0.5], [0, 1, 0, -0.5], [0, 0, 0, 1]]
-        self.assertEqual(json.loads(read("r.json"))["transform"], expected)
+        self.assertEqual(read_json("r.json")["transform"], expected)
 
     def test_meshes_that_cannot_be_normalized(self):
-        with open("point.obj", "w") as file:
-            file.write("v 1 2 3\n" * 3 + "f 1 2 3\n")
+        write("point.obj", "v 1 2 3\n" * 3 + "f 1 2 3\n")
         self.refused("info point.obj --normalize cube", 2, "all corners are at one point")
-        with open("huge.obj", "w") as file:
-            file.write("v -1.7e308 0 0\nv 1.7e308 0 0\nv 0 1 0\nf 1 2 3\n")
+        write("huge.obj", "v -1.7e308 0 0\nv 1.7e308 0 0\nv 0 1 0\nf 1 2 3\n")
         self.refused("info huge.obj --normalize sphere", 4, "beyond what double precision can normalize")
         for value in ("cube:0", "cube:-1", "ball", "cube:", "sphere:x"):
             self.refused("info %s --normalize %s" % (CUBE, value), 1, "--normalize %s: expected" % value)
 
     def test_compressed_meshes_and_points(self):
         expected = self.works("info %s --json" % TEAPOT)
-        with open("a.obj.gz", "wb") as file:
-            file.write(gzip.compress(read(TEAPOT)))
+        write("a.obj.gz", gzip.compress(read(TEAPOT)))
         shutil.copy("a.obj.gz", "plain.obj")  # by content, whatever the name
         names = ["a.obj.gz", "plain.obj"]
         if shutil.which("zstd"):
@@ -483,8 +472,7 @@ class Meshes(DataSets):
             self.assertEqual(self.works("info %s --json" % name), expected, name)
             with open(name, "rb") as file:
                 self.assertEqual(self.works("info - --mesh-format obj --json", stdin=file), expected, name)
-        with open("p.csv.gz", "wb") as file:
-            file.write(gzip.compress(b"x,y,z\n.5,.5,.5\n2,2,2\n"))
+        write("p.csv.gz", gzip.compress(b"x,y,z\n.5,.5,.5\n2,2,2\n"))
         self.assertEqual(self.works("points %s p.csv.gz" % CUBE), b"x,y,z,w\n0.5,0.5,0.5,1\n2,2,2,0\n")
         self.works("batch . --out-dir out --format npz --resolution 4")
         self.assertEqual(sorted(name for name in os.listdir("out") if name.endswith("npz")),

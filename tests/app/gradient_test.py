@@ -3,10 +3,9 @@
 The oracle: differences of the winding numbers that raycone prints itself, and the same numbers as CSV.
 """
 
-import json
 import unittest
 
-from command_case import CommandCase, mesh, numpy_or_skip, run_tests
+from command_case import CommandCase, mesh, numpy_or_skip, read, read_json, run_tests, write
 
 numpy = numpy_or_skip()
 try:
@@ -69,8 +68,7 @@ class Gradient(CommandCase):
         self.assertEqual(archive["w"].shape, archive["inside"].shape)
 
     def test_points(self):
-        with open("points.txt", "w") as file:
-            file.write(".5 .5 1\n.2 .3 .4\n2 2 2\n")
+        write("points.txt", ".5 .5 1\n.2 .3 .4\n2 2 2\n")
         rows = table(self.works("points %s points.txt --field winding,gradient" % OPEN_BOX))
         self.works("points %s points.txt --field winding,gradient -o a.npy" % OPEN_BOX)
         both = numpy.column_stack([rows["w"], vectors(rows)])
@@ -84,8 +82,7 @@ class Gradient(CommandCase):
     def test_vti(self):
         expected = self.expected().transpose(2, 1, 0, 3)
         self.works(LATTICE + "a.vti --double")
-        with open("a.vti", "rb") as file:
-            text = file.read()
+        text = read("a.vti")
         self.assertIn(b'<PointData Vectors="gradient">', text)
         self.assertIn(b'<DataArray type="Float64" Name="gradient" NumberOfComponents="3"', text)
         begin = text.index(b"raw\">\n   _") + 10 + 8
@@ -107,8 +104,7 @@ class Gradient(CommandCase):
     def test_it_is_verified(self):
         words = LATTICE + "a.csv --verify 50 --report report.json"
         self.works(words)
-        with open("report.json") as file:
-            verification = json.load(file)["verify"]
+        verification = read_json("report.json")["verify"]
         self.assertEqual(verification["samples"], 50)
         self.assertLess(verification["largest_gradient_difference"], 1e-12)
         self.assertGreater(verification["largest_gradient_difference"], 0)

@@ -11,7 +11,7 @@ import os
 import struct
 import sys
 
-from command_case import CommandCase, numpy_or_skip, read, run_tests
+from command_case import CommandCase, numpy_or_skip, read, read_json, run_tests, write
 
 numpy = numpy_or_skip()
 SHARED = os.path.abspath(sys.argv.pop(1)) if len(sys.argv) > 1 else ""
@@ -84,13 +84,9 @@ class Labels(CommandCase):
     def setUp(self):
         super().setUp()
         for name, part in PARTS.items():
-            self.write(name.replace(" ", "_") + ".obj", obj({"": part}))
+            write(name.replace(" ", "_") + ".obj", obj({"": part}))
         self.files = " ".join(name.replace(" ", "_") + ".obj" for name in PARTS)
-        self.write("groups.obj", obj(PARTS))
-
-    def write(self, name, text):
-        with open(name, "wb") as file:
-            file.write(text if isinstance(text, bytes) else text.encode())
+        write("groups.obj", obj(PARTS))
 
     def lattice(self, words, options="", place=BOX):
         self.works("lattice %s -o labels.npy --field label%s%s" % (words, place, options))
@@ -135,7 +131,7 @@ class Values(Labels):
 
     def test_components_and_groups_are_what_files_are(self):
         expected = self.lattice(self.files, " --orient auto")
-        self.write("solids.stl", stl(PARTS))
+        write("solids.stl", stl(PARTS))
         for name, by in (("groups.obj", "group"), ("groups.obj", "component"), ("solids.stl", "group"),
                          ("solids.stl", "component")):
             labels = self.lattice(name, " --parts %s --orient auto" % by)
@@ -143,24 +139,24 @@ class Values(Labels):
 
     def test_polygons_that_become_fewer_triangles_move_the_groups_behind_them(self):
         # An outline with a spike, of six corners, is two triangles; before it and behind it are groups, too.
-        self.write("s.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 2 2 0\nv 0 1 0\nv 0 0 5\nv 1 0 5\nv 0 1 5\n"
+        write("s.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 2 2 0\nv 0 1 0\nv 0 0 5\nv 1 0 5\nv 0 1 5\n"
                    "g before\nf 6 7 8\ng spike\nf 1 2 3 4 3 5\ng behind\nf 6 7 8\nf 8 7 6\nf 6 7 1\n")
         self.works("lattice s.obj -o s.csv --field label --parts group --resolution 2 --report r.json")
-        self.assertEqual([part["faces"] for part in json.loads(read("r.json"))["parts"]], [1, 2, 3])
+        self.assertEqual([part["faces"] for part in read_json("r.json")["parts"]], [1, 2, 3])
 
     def test_meshes_of_gltf(self):
-        self.write("m.gltf", gltf({"a": box((0, 0, 0)), "b": box((1.5, 0, 0))}))
+        write("m.gltf", gltf({"a": box((0, 0, 0)), "b": box((1.5, 0, 0))}))
         twice = box((1.5, 0, 0))
         shifted = ([[x, y, z + 0.5] for x, y, z in twice[0]], [tuple(i + 8 for i in quad) for quad in twice[1]])
-        self.write("b.obj", obj({"": (twice[0] + shifted[0], list(twice[1]) + list(shifted[1]))}))
-        self.write("a.obj", obj({"": box((0, 0, 0))}))
+        write("b.obj", obj({"": (twice[0] + shifted[0], list(twice[1]) + list(shifted[1]))}))
+        write("a.obj", obj({"": box((0, 0, 0))}))
         labels = self.lattice("m.gltf", " --parts group --report r.json")
         self.assertTrue((labels == labels_of(self.single_jobs("a.obj b.obj"))).all())
-        self.assertEqual([part["name"] for part in json.loads(read("r.json"))["parts"]], ["part 1", "b"])
+        self.assertEqual([part["name"] for part in read_json("r.json")["parts"]], ["part 1", "b"])
 
     def test_more_parts_than_a_byte_holds(self):
         parts = {str(n): box((n % 20 / 10, n // 20 / 10, 0), 0.1) for n in range(300)}
-        self.write("many.obj", obj(parts))
+        write("many.obj", obj(parts))
         place = " --resolution 20,15,1 --centers"
         labels = self.lattice("many.obj", " --parts group", place)
         self.assertTrue((labels[:, :, 0] == 1 + numpy.arange(300).reshape(15, 20).T).all())
@@ -180,7 +176,7 @@ class Values(Labels):
         index = numpy.indices((15, 9, 9)).reshape(3, -1).T
         points = numpy.array([-0.25] * 3) + index * 0.25
         numpy.save("p.npy", points)
-        self.write("p.csv", "".join("%r,%r,%r\n" % tuple(p) for p in points.tolist()))
+        write("p.csv", "".join("%r,%r,%r\n" % tuple(p) for p in points.tolist()))
         for options in ("", " --priority", " --rule threshold=-0.5"):
             expected = self.lattice(self.files, options, " --bounds -.25,-.25,-.25,3.25,1.75,1.75 --resolution 15,9,9")
             self.works("points %s p.npy -o v.npy --field label --verify 20%s" % (self.files, options))
@@ -218,7 +214,7 @@ class Values(Labels):
         self.assertTrue((numpy.load("t.npz")["label"] == drawn["label"]).all())
 
     def test_other_fields_are_those_of_all_together(self):
-        self.write("all.obj", obj({"a": PARTS["left lobe"], "b": PARTS["right"], "c": PARTS["open"]}))
+        write("all.obj", obj({"a": PARTS["left lobe"], "b": PARTS["right"], "c": PARTS["open"]}))
         for files, words in (("all.obj", "all.obj --parts group"), ("all.obj", "left_lobe.obj right.obj open.obj")):
             self.works("lattice %s -o l.npz --field winding,label,inside --verify 10%s" % (words, BOX))
             self.works("lattice %s -o w.npz --field winding,inside%s" % (files, BOX))
@@ -229,9 +225,9 @@ class Values(Labels):
     def test_meshes_are_normalized_together(self):
         place = " --bounds -.5,-.5,-.5,.5,.5,.5 --resolution 14"
         labels = self.lattice("left_lobe.obj right.obj open.obj", " --normalize cube --report r.json", place)
-        scale = json.loads(read("r.json"))["transform"][0][0]
+        scale = read_json("r.json")["transform"][0][0]
         self.assertAlmostEqual(scale, 1 / 3)
-        self.write("all.obj", obj({"a": PARTS["left lobe"], "b": PARTS["right"], "c": PARTS["open"]}))
+        write("all.obj", obj({"a": PARTS["left lobe"], "b": PARTS["right"], "c": PARTS["open"]}))
         self.assertTrue((labels == self.lattice("all.obj", " --parts group --normalize cube", place)).all())
         self.assertEqual(set(labels.ravel()), {0, 1, 2, 3})
 
@@ -248,7 +244,7 @@ class Values(Labels):
             reports = []
             for names, mesh in ((fields + ",label", self.files), (fields, "groups.obj")):
                 self.works("%s %s --field %s%s%s" % (command, mesh, names, place, words))
-                report = json.loads(read("r.json"))
+                report = read_json("r.json")
                 reports.append([report[key] for key in ("verify", "on_surface", "degenerate", "exterior_edges")])
             self.assertEqual(reports[0], reports[1], command)
             self.assertIn("largest_gradient_difference", reports[0][0])
@@ -258,16 +254,16 @@ class Values(Labels):
     def test_welding_within_a_distance_makes_the_box_of_single_jobs(self):
         """A vertex beside a cube's corner is drawn into it where both are in one file, and the box ends there."""
         cube, beside = box((0, 0, 0)), ([[1.1, 1, 1], [.5, .5, .5], [.5, .2, .8]], [(0, 1, 2, 2)])
-        self.write("w.obj", obj({"a": cube, "b": beside}))
-        self.write("a.obj", obj({"": cube}))
-        self.write("b.obj", obj({"": ([[1.1, 1, 1], [1.1, .5, 1], [1.5, 1, 1]], [(0, 1, 2, 2)])}))
+        write("w.obj", obj({"a": cube, "b": beside}))
+        write("a.obj", obj({"": cube}))
+        write("b.obj", obj({"": ([[1.1, 1, 1], [1.1, .5, 1], [1.5, 1, 1]], [(0, 1, 2, 2)])}))
         for mesh, expected, kinds in (("w.obj", [.5, 1], ("inside", "label", "label --parts group",
                                                           "label --parts component", "label,inside --parts group")),
                                       ("a.obj b.obj", [.75, 1.5], ("label", "label --normalize cube", "label,inside"))):
             sides = set()
             for options in kinds:
                 self.works("lattice %s --field %s --weld .2 --resolution 3 -o w.npz --report r.json" % (mesh, options))
-                lattice = json.loads(read("r.json"))["lattice"]
+                lattice = read_json("r.json")["lattice"]
                 if "normalize" not in options:
                     sides.add((lattice["spacing"][0], lattice["origin"][0] + 2 * lattice["spacing"][0]))
                 if options.split()[0] in ("inside", "label"):
@@ -296,43 +292,43 @@ class Values(Labels):
             self.assertTrue(((got["label"] > 0) >= got["inside"]).all() and (got["label"] > 0).any())
         self.works("lattice %s -o l.csv --field label --parts group --resolution 2 --report r.json" %
                    os.path.join(SHARED, names[1]))
-        self.assertEqual([part["faces"] for part in json.loads(read("r.json"))["parts"]], [1, 1])
+        self.assertEqual([part["faces"] for part in read_json("r.json")["parts"]], [1, 1])
 
 
 class Names(Labels):
     def names(self, words):
         self.works("lattice %s -o n.csv --field label --resolution 2 --report r.json" % words)
-        return [part["name"] for part in json.loads(read("r.json"))["parts"]]
+        return [part["name"] for part in read_json("r.json")["parts"]]
 
     def test_groups_of_obj(self):
         cubes = [box((n, 0, 0), 0.5) for n in range(6)]
         text = obj(dict(zip(["", "o  Wheel \n", "g rim  of\tsteel # no name\n", "o Wheel2\n", "g Wheel2\n", "o Wheel\ng rim of steel\n"],
                             cubes)))
-        self.write("g.obj", text + "g nothing here\n")
+        write("g.obj", text + "g nothing here\n")
         self.assertEqual(self.names("g.obj --parts group"),
                          ["default", "Wheel", "Wheel/rim of steel", "Wheel2"])
-        self.write("g.obj", obj(dict(zip(["a\n", "g\n", "g a#1\\\n b\n", "g %s\n" % ("x" * 300)], cubes))))
+        write("g.obj", obj(dict(zip(["a\n", "g\n", "g a#1\\\n b\n", "g %s\n" % ("x" * 300)], cubes))))
         self.assertEqual(self.names("g.obj --parts group"), ["default", "a#1 b", "x" * 255])
 
     def test_solids_of_stl(self):
-        self.write("s.stl", stl(dict(zip(["a b", "facet one", ""], [box((n, 0, 0), 0.5) for n in range(3)])))
+        write("s.stl", stl(dict(zip(["a b", "facet one", ""], [box((n, 0, 0), 0.5) for n in range(3)])))
                    + "solid empty\nendsolid\n")
         self.assertEqual(self.names("s.stl --parts group"), ["a b", "facet one", "part 3"])
         one_line = "solid one facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop endfacet"
-        self.write("o.stl", one_line + " endsolid one")
+        write("o.stl", one_line + " endsolid one")
         self.assertEqual(self.names("o.stl --parts group"), ["one"])
         binary = b" " * 80 + struct.pack("<I", 1) + struct.pack("<12fH", *[0] * 6, 1, 0, 0, 0, 1, 0, 0)
-        self.write("b.stl", binary)
+        write("b.stl", binary)
         self.assertEqual(self.names("b.stl --parts group"), ["part 1"])
 
     def test_files(self):
         os.mkdir("bones")
-        self.write("bones/femur.left.obj.gz", gzip.compress(read("right.obj")))
-        self.write("list", "left_lobe.obj\n# no mesh\n\nbones/femur.left.obj.gz\n")
+        write("bones/femur.left.obj.gz", gzip.compress(read("right.obj")))
+        write("list", "left_lobe.obj\n# no mesh\n\nbones/femur.left.obj.gz\n")
         for words in ("left_lobe.obj bones/femur.left.obj.gz", "@list"):
             self.assertEqual(self.names(words), ["left_lobe", "femur.left"])
         self.assertEqual(self.names("right.obj @list"), ["right", "left_lobe", "femur.left"])
-        meshes = json.loads(read("r.json"))["meshes"]
+        meshes = read_json("r.json")["meshes"]
         self.assertEqual([mesh["mesh"] for mesh in meshes], ["right.obj", "left_lobe.obj", "bones/femur.left.obj.gz"])
         self.assertEqual(self.works("lattice @- right.obj -o - --format csv --resolution 2 --field label",
                                     input=b"left_lobe.obj\n"),
@@ -359,7 +355,7 @@ class Names(Labels):
         self.assertIn(b'"labels":["left lobe","right","open","turned"]', read("l.nrrd"))
         pairs = dict(line.split(":=", 1) for line in read("l.nrrd").split(b"\n\n", 1)[0].decode().split("\n") if ":=" in line)
         self.works(words + " -o l.nii")
-        for n, label in enumerate(json.loads(read("l.json"))["labels"]):
+        for n, label in enumerate(read_json("l.json")["labels"]):
             segment = {key.split("_", 1)[1]: value for key, value in pairs.items() if key.startswith("Segment%d_" % n)}
             colour = segment.pop("Color").split(" ")
             self.assertEqual(segment, {"ID": "Segment_%d" % (n + 1), "Name": label["name"], "LabelValue": str(n + 1),
@@ -372,7 +368,7 @@ class Names(Labels):
         self.assertIn(b"Tree_int32_5_4_3", read("l.vdb"))
         self.works(words + " -o l.npy --report r.json")
         labels = numpy.load("l.npy")
-        report = json.loads(read("r.json"))
+        report = read_json("r.json")
         self.assertEqual([part["label"] for part in report["parts"]], [1, 2, 3, 4])
         self.assertEqual([part["samples"] for part in report["parts"]], numpy.bincount(labels.ravel())[1:].tolist())
         self.assertEqual([part["exterior_edges"] for part in report["parts"]], [0, 0, 4, 0])
@@ -415,7 +411,7 @@ class Formats(Labels):
         words = "lattice groups.obj --field label --parts group --orient auto" + BOX
         for name, table in (("a.nii", "a.json"), ("b.NII.GZ", "b.json")):
             self.works("%s -o %s" % (words, name))
-            labels = json.loads(read(table))["labels"]
+            labels = read_json(table)["labels"]
             self.assertEqual([(label["label"], label["name"]) for label in labels], list(enumerate(PARTS, 1)))
             colours = [tuple(label["color"]) for label in labels]
             self.assertEqual(len(set(colours)), len(colours))
@@ -428,15 +424,15 @@ class Formats(Labels):
         self.works(words + " -o weird --format nii")
         self.assertTrue(os.path.exists("weird.json"))
         self.works(words + " -o a.nii --report a.json")  # which has the names, too
-        self.assertEqual([part["name"] for part in json.loads(read("a.json"))["parts"]], list(PARTS))
+        self.assertEqual([part["name"] for part in read_json("a.json")["parts"]], list(PARTS))
         for report in ("./f.json", os.path.abspath("f.json")):
             self.works(words + " -o f.nii --report " + report)
-            self.assertIn("parts", json.loads(read("f.json")))
+            self.assertIn("parts", read_json("f.json"))
         self.works(words + " -o A.nii --report a.json")
         self.assertTrue(os.path.exists("A.json"))  # another file
         self.refused(words + " -o a.nii --depfile a.json", 1, "a.json: is depfile and label names")
         self.refused(words + " -o x.nii --no-clobber --memory-limit 1", 4, "limit")
-        self.write("y.json", "mine")
+        write("y.json", "mine")
         self.refused(words + " -o y.nii --no-clobber", 3, "y.json")
         self.assertFalse(os.path.exists("y.nii") or os.path.exists("x.nii") or os.path.exists("x.json"))
         self.assertEqual(read("y.json"), b"mine")
@@ -482,12 +478,12 @@ class Refusals(Labels):
 
     def test_what_cannot_be_read(self):
         self.refused("lattice left_lobe.obj absent.obj -o l.npy --field label", 2, "absent.obj: cannot be")
-        self.write("points.csv", "0,0,0\n")
+        write("points.csv", "0,0,0\n")
         self.refused("points right.obj points.csv -o l.npy --field label --dtype f32", 1, "are no real numbers")
         self.refused("lattice @absent -o l.npy --field label", 2, "absent: cannot be")
-        self.write("empty", "# nothing\n")
+        write("empty", "# nothing\n")
         self.refused("lattice @empty -o l.npy --field label", 2, "empty: names no mesh")
-        self.write("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        write("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
         self.refused("lattice a.off -o l.npy --field label --parts group", 2, "a.off: its format has no groups")
         self.works("lattice a.off -o l.npy --field label --parts component")
 
@@ -507,12 +503,12 @@ class Refusals(Labels):
         self.assertEqual(len(warnings), 2, text)
         self.assertRegex(warnings[0], r"\Araycone: warning: turned\.obj: reversed: 1 closed")
         self.assertRegex(warnings[1], r"\Araycone: warning: turned\.obj: empty: 1 part has no sample inside by the rule threshold=0\.5 \(turned\)")
-        self.assertEqual(json.loads(read("r.json"))["warnings"], ["reversed", "empty"])
+        self.assertEqual(read_json("r.json")["warnings"], ["reversed", "empty"])
         self.refused("lattice left_lobe.obj turned.obj -o s.npy --field label --strict" + BOX, 2, "turned.obj: reversed")
         self.assertFalse(os.path.exists("s.npy"))
 
     def test_a_cavity_is_reversed_only_where_the_rule_cares(self):
-        self.write("hollow.obj", obj({"outer": box((0, 0, 0)), "inner": box((0.25, 0.25, 0.25), 0.5, flipped=True)}))
+        write("hollow.obj", obj({"outer": box((0, 0, 0)), "inner": box((0.25, 0.25, 0.25), 0.5, flipped=True)}))
         words = "lattice hollow.obj -o l.npy --field label --parts component --resolution 9"
         for rule in ("threshold=0.5", "positive"):
             self.assertIn(": reversed: 1 closed", self.reported(words + " --rule " + rule))
@@ -524,8 +520,8 @@ class Refusals(Labels):
 class Batches(Labels):
     def test_each_mesh_has_its_parts(self):
         os.mkdir("in")
-        self.write("in/groups.obj", read("groups.obj"))
-        self.write("in/two.stl", stl({"a": box((0, 0, 0)), "b": box((1.5, 0, 0))}))
+        write("in/groups.obj", read("groups.obj"))
+        write("in/two.stl", stl({"a": box((0, 0, 0)), "b": box((1.5, 0, 0))}))
         self.works("batch in --out-dir out --field label --parts group --format nii.gz --orient auto --resolution 9")
         for name, words in (("groups", "in/groups.obj"), ("two", "in/two.stl")):
             self.works("lattice %s -o one.nii.gz --field label --parts group --orient auto --resolution 9" % words)

@@ -15,7 +15,7 @@ import warnings
 import xml.etree.ElementTree
 import zipfile
 
-from command_case import CommandCase, mesh, numpy_or_skip, read, run, run_tests
+from command_case import CommandCase, mesh, numpy_or_skip, read, read_json, run, run_tests, write
 
 numpy = numpy_or_skip()
 CUBE, TEAPOT, OPEN_BOX = map(mesh, ("cube", "teapot", "open_box"))
@@ -34,12 +34,15 @@ def places(origin, steps, first, counts):
     return ((numpy.array(origin, float) + i * steps[0]) + j * steps[1]) + k * steps[2]
 
 
+def write_points(name, points):
+    write(name, "".join(",".join(repr(float(n)) for n in point) + "\n" for point in points))
+
+
 def write_nrrd(name, origin, steps, counts, space="right-anterior-superior"):
     text = " ".join("(%s)" % ",".join(repr(float(n)) for n in step) for step in steps)
-    with open(name, "w") as file:
-        file.write("NRRD0005\ntype: uint8\ndimension: 3\nspace: %s\nsizes: %d %d %d\nspace directions: %s\n"
-                   "encoding: raw\nspace origin: (%s)\n\n"
-                   % (space, *counts, text, ",".join(repr(float(n)) for n in origin)))
+    write(name, "NRRD0005\ntype: uint8\ndimension: 3\nspace: %s\nsizes: %d %d %d\nspace directions: %s\n"
+                "encoding: raw\nspace origin: (%s)\n\n"
+                % (space, *counts, text, ",".join(repr(float(n)) for n in origin)))
 
 
 SHEAR = numpy.array([[0.2, 0.05, 0], [-0.1, 0.3, 0.07], [0.02, 0, 0.25]])
@@ -62,8 +65,7 @@ class Like(CommandCase):
     def expect_points(self, mesh, fields, points):
         """Both CSV files digit by digit: places and values."""
         got = self.table("lattice %s --like g.nrrd -o - --format csv %s" % (mesh, fields))
-        with open("p.csv", "w") as file:
-            file.writelines(",".join(repr(float(n)) for n in point) + "\n" for point in points)
+        write_points("p.csv", points)
         expected = self.table("points %s p.csv %s" % (mesh, fields))
         self.assertEqual(got.shape[0], expected.shape[0])
         self.assertTrue((got[:, 3:].astype(float) == expected.astype(float)).all())
@@ -98,31 +100,26 @@ class Values(Like):
     def test_other_spaces_of_nrrd(self):
         steps = 0.2 * rotation(7)
         points = self.lattice_around(steps)
-        with open("g.nrrd") as file:
-            head = file.read()
+        head = read("g.nrrd").decode()
         expected = self.works("lattice %s --like g.nrrd -o - --format csv" % OPEN_BOX)
         for space, signs in (("LPS", (-1, -1, 1)), ("left-anterior-superior", (-1, 1, 1)), ("Scanner-XYZ", (1, 1, 1)),
                              ("3DRH", (1, 1, 1))):
             write_nrrd("g.nrrd", points[0] * signs, steps * signs, (9, 8, 7), space)
             self.assertEqual(self.works("lattice %s --like g.nrrd -o - --format csv" % OPEN_BOX), expected, space)
-        with open("g.nrrd", "w") as file:
-            file.write(head.replace("space: right-anterior-superior", "Space Dimension: 3").replace("sizes", "SIZES"))
+        write("g.nrrd", head.replace("space: right-anterior-superior", "Space Dimension: 3").replace("sizes", "SIZES"))
         self.assertEqual(self.works("lattice %s --like g.nrrd -o - --format csv" % OPEN_BOX), expected)
         # An axis of colours in front.
-        with open("g.nrrd", "w") as file:
-            file.write(head.replace("dimension: 3", "dimension: 4").replace("sizes: 9", "sizes: 3 9")
-                       .replace("directions: ", "directions: none "))
+        write("g.nrrd", head.replace("dimension: 3", "dimension: 4").replace("sizes: 9", "sizes: 3 9")
+                        .replace("directions: ", "directions: none "))
         self.assertEqual(self.works("lattice %s --like g.nrrd -o - --format csv" % OPEN_BOX), expected)
         # Nothing but distances.
-        with open("g.nrrd", "w") as file:
-            file.write("NRRD0001\ndimension: 3\nsizes: 3 4 5\nspacings: .5 .25 2\n\n")
+        write("g.nrrd", "NRRD0001\ndimension: 3\nsizes: 3 4 5\nspacings: .5 .25 2\n\n")
         self.expect_points(OPEN_BOX, "", places((0, 0, 0), numpy.diag([0.5, 0.25, 2]), (0, 0, 0), (3, 4, 5)))
 
     def test_distances(self):
         """Cut off at the band, in the world's units."""
         points = self.lattice_around(0.125 * rotation(4), (17, 16, 15))
-        with open("p.csv", "w") as file:
-            file.writelines(",".join(repr(float(n)) for n in point) + "\n" for point in points)
+        write_points("p.csv", points)
         for mesh in (CUBE, OPEN_BOX):
             whole = self.table("points %s p.csv --field sdf" % mesh)[:, 3].astype(float)
             for band in ("2", "all"):
@@ -143,17 +140,14 @@ class Values(Like):
             self.lattice_around(steps, (41, 37, 43))
             words = "lattice %s --like g.nrrd --field winding,inside,sdf " % OPEN_BOX
             self.works(words + "--verify 50 -o a.vdb --report r.json")
-            with open("r.json") as file:
-                report = json.load(file)
+            report = read_json("r.json")
             self.assertEqual(report["verify"]["samples"], 50)
             self.assertLess(report["verify"]["largest_difference"], 1e-10)
             words += "-o b.npz "
             self.works(words + "--threads 1 --memory-limit 160M")
-            with open("b.npz", "rb") as file:
-                first = file.read()
+            first = read("b.npz")
             self.works(words + "--threads 3")
-            with open("b.npz", "rb") as file:
-                self.assertEqual(file.read(), first)
+            self.assertEqual(read("b.npz"), first)
 
     def test_empty_is_told_where_the_grid_reaches_around_the_mesh(self):
         for steps in (TURNED[0][1], SIGNED_PERMUTATIONS[5] * 0.2):
@@ -190,9 +184,8 @@ class Files(Like):
     def test_nrrd_keeps_every_digit(self):
         for steps, points in self.cases():
             self.works("lattice %s --like g.nrrd -o a.nrrd" % CUBE)
-            with open("a.nrrd", "rb") as file:
-                head = dict(line.split(": ", 1) for line in file.read().split(b"\n\n")[0].decode().split("\n")
-                            if ": " in line and not line.startswith("raycone"))
+            head = dict(line.split(": ", 1) for line in read("a.nrrd").split(b"\n\n")[0].decode().split("\n")
+                        if ": " in line and not line.startswith("raycone"))
             numbers = lambda key: [float(n) for n in head[key].translate(str.maketrans("(),", "   ")).split()]
             self.assertEqual(numbers("space directions"), (steps + 0.0).ravel().tolist())
             self.assertEqual(numbers("space origin"), points[0].tolist())
@@ -202,15 +195,14 @@ class Files(Like):
         rows = ["v %d %d %d" % (i % 3, i % 5, i % 7) for i in range(12)]
         rows += ["g %d %s\nf %d %d %d" % (n, "x" * 240, *numpy.random.default_rng(n).choice(12, 3, False) + 1)
                  for n in range(3000)]
-        with open("many.obj", "w") as file:
-            file.write("\n".join(rows) + "\n")
+        write("many.obj", "\n".join(rows) + "\n")
         result = run("lattice many.obj --field label --parts group -o a.nrrd --resolution 3 --quiet")
         self.assertEqual(result.returncode, 0, result.stderr)
         self.assertGreater(read("a.nrrd").index(b"\n\n"), 1 << 20)
         self.assertIsNotNone(json.loads(self.works("info a.nrrd --json"))["lattice"])
         self.works("lattice %s --like a.nrrd -o b.nrrd" % CUBE)
-        with open("g.nrrd", "wb") as file:  # a search from the start on for each block would take minutes
-            file.write(b"NRRD0004\n" + b"# %s\n" % (b"x" * 64) * (1 << 20))
+        # A search from the start on for each block would take minutes.
+        write("g.nrrd", b"NRRD0004\n" + b"# %s\n" % (b"x" * 64) * (1 << 20))
         self.refused("lattice %s --like g.nrrd -o b.nrrd" % CUBE, 2, "its head, expected an empty line within 64 MB")
 
     def test_nifti(self):
@@ -257,8 +249,7 @@ class Files(Like):
                 struct.pack_into("<2h", head, 252, 1, 0)
                 struct.pack_into("<6f", head, 256, *quaternion, -1, 2, -3)
                 struct.pack_into("<4s", head, 344, b"n+1\0")
-                with open("q.nii", "wb") as file:
-                    file.write(head + bytes(4 * 3 * 4 * 5))
+                write("q.nii", head + bytes(4 * 3 * 4 * 5))
                 points = self.like("q.nii")
                 self.assertEqual(len(numpy.unique(points, axis=0)), 3 * 4 * 5)
                 self.assertTrue((points * 8 % 1 == 0).all(), quaternion)
@@ -272,10 +263,9 @@ class Files(Like):
                     x, y, z = axis / numpy.linalg.norm(axis)
                     cross, angle = numpy.array([[0, -z, y], [z, 0, -x], [-y, x, 0]]), numpy.pi - short
                     turn = numpy.eye(3) + numpy.sin(angle) * cross + (1 - numpy.cos(angle)) * cross @ cross
-                    with open("h.nrrd", "w") as file:
-                        file.write("NRRD0004\ntype: float\ndimension: 3\nspace: RAS\nsizes: %d %d %d\n" % counts)
-                        vectors = " ".join("(%r,%r,%r)" % tuple(map(float, column)) for column in turn.T)
-                        file.write("space directions: %s\nspace origin: (0,0,0)\nencoding: raw\n\n" % vectors)
+                    vectors = " ".join("(%r,%r,%r)" % tuple(map(float, column)) for column in turn.T)
+                    write("h.nrrd", "NRRD0004\ntype: float\ndimension: 3\nspace: RAS\nsizes: %d %d %d\n" % counts +
+                                    "space directions: %s\nspace origin: (0,0,0)\nencoding: raw\n\n" % vectors)
                     self.works("lattice %s --like h.nrrd -o h.nii" % CUBE)
                     head = read("h.nii")
                     if struct.unpack_from("<h", head, 252)[0] == 0:
@@ -325,21 +315,17 @@ class Files(Like):
         indices = places((0, 0, 0), numpy.eye(3), (0, 0, 0), self.counts)
         for steps, points in self.cases():
             self.works("lattice %s --like g.nrrd -o a.vti --report r.json" % CUBE)
-            with open("a.vti", "rb") as file:
-                text = file.read().split(b"<AppendedData")[0] + b"</VTKFile>"
+            text = read("a.vti").split(b"<AppendedData")[0] + b"</VTKFile>"
             image = xml.etree.ElementTree.fromstring(text).find("ImageData").attrib
-            with open("r.json") as file:
-                lattice = json.load(file)["lattice"]
-            read = lambda key: numpy.array([float(n) for n in image[key].split()])
-            for origin, spacing, direction in ((read("Origin"), read("Spacing"), read("Direction").reshape(3, 3)),
+            lattice = read_json("r.json")["lattice"]
+            axes = [numpy.array([float(n) for n in image[key].split()]) for key in ("Origin", "Spacing", "Direction")]
+            for origin, spacing, direction in ((*axes[:2], axes[2].reshape(3, 3)),
                                                (lattice["origin"], lattice["spacing"], lattice["direction"])):
                 got = numpy.array(origin) + (indices * spacing) @ numpy.array(direction).T
                 self.assertLess(abs(got - points).max(), 1e-13)
         self.works("lattice %s --resolution 3 -o a.vti --report r.json" % CUBE)
-        with open("a.vti", "rb") as file:
-            self.assertNotIn(b"Direction", file.read())
-        with open("r.json") as file:
-            self.assertNotIn("direction", json.load(file)["lattice"])
+        self.assertNotIn(b"Direction", read("a.vti"))
+        self.assertNotIn("direction", read_json("r.json")["lattice"])
 
     def test_vdb(self):
         for steps, points in self.cases():
@@ -382,8 +368,8 @@ class Files(Like):
         self.works("batch in --out-dir out --like g.nrrd --format nrrd --field inside")
         for name, mesh in (("a", CUBE), ("b", OPEN_BOX)):
             self.works("lattice %s --like g.nrrd -o one.nrrd --field inside" % mesh)
-            with open("one.nrrd", "rb") as one, open("out/%s.nrrd" % name, "rb") as other:
-                self.assertEqual(one.read().split(b"\n\n", 1)[1], other.read().split(b"\n\n", 1)[1])
+            one, other = (read(path).split(b"\n\n", 1)[1] for path in ("one.nrrd", "out/%s.nrrd" % name))
+            self.assertEqual(one, other)
 
     def test_what_is_no_lattice_is_refused(self):
         for steps, message in ((numpy.zeros((3, 3)), "axes, expected three directions"),

@@ -14,12 +14,11 @@ import re
 import shutil
 import struct
 import subprocess
-import sys
-import tempfile
 import unittest
 import zipfile
 
-RAYCONE, MESHES = (os.path.abspath(sys.argv.pop(1)) for _ in range(2))
+from command_case import RAYCONE, enter_empty_folder, mesh, read, write
+
 TIMES = re.compile(r" in [0-9.]+ s( \([^)]*\))?|, [^,;\n]*samples/s", re.M)
 
 Row = collections.namedtuple("Row", "words option verdict status", defaults=[0])
@@ -313,8 +312,7 @@ def written():
             if name.startswith("batch-state"):
                 continue
             path = os.path.join(top, name)
-            with open(path, "rb") as file:
-                result[path] = without_times(name, file.read())
+            result[path] = without_times(name, read(path))
     return result
 
 
@@ -338,10 +336,8 @@ def result_of(words):
 class OptionEffects(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.directory = tempfile.TemporaryDirectory()
-        os.chdir(cls.directory.name)
-        with open(os.path.join(MESHES, "overlapping_cubes.obj")) as file:
-            cubes = file.read()
+        enter_empty_folder(cls.addClassCleanup)
+        cubes = read(mesh("overlapping_cubes")).decode()
         corners = ["0 0 0", "1 0 0", "0 1 0", "0 0 1"]
         faces = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
         seam = "".join("v %s\n" % corners[i] for face in faces for i in face)
@@ -364,26 +360,19 @@ class OptionEffects(unittest.TestCase):
         }
         for name, text in texts.items():
             os.makedirs(os.path.dirname(name) or ".", exist_ok=True)
-            with open(name, "w") as file:
-                file.write(text)
+            write(name, text)
         header = b"{'descr': '<f8', 'fortran_order': False, 'shape': (1, 3), }"
         header += b" " * (117 - len(header)) + b"\n"
         raw = struct.pack("<3d", 0.1, 0.2, 0.3)
         npy = b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + raw
         for name, content in {"points.npy": npy, "points.raw": raw}.items():
-            with open(name, "wb") as file:
-                file.write(content)
+            write(name, content)
         for words in ("lattice cubes.obj -o grid.vdb --resolution 3", "lattice cubes.obj -o grid.npz --resolution 3",
                       "lattice open.obj -o around.vdb --resolution 5 --padding .5",
                       "lattice cubes.obj -o grid.nrrd --resolution 3", "lattice cubes.obj -o grid.nii.gz --resolution 3",
                       "batch good --out-dir done --resolution 4 --format csv"):
             assert run(words).returncode == 0, words
         cls.baselines = {}
-
-    @classmethod
-    def tearDownClass(cls):
-        os.chdir("/")
-        cls.directory.cleanup()
 
     def without(self, words):
         if words not in self.baselines:

@@ -4,10 +4,9 @@ The oracle: distances between the surfaces with and without, both ways, at point
 distances to any mesh (tests/core/distance_test.cpp has the oracle of those); and `info --require`.
 """
 
-import json
 import subprocess
 
-from command_case import RAYCONE, SURFACE, CommandCase, mesh, numpy_or_skip, run_tests
+from command_case import RAYCONE, SURFACE, CommandCase, mesh, numpy_or_skip, read, read_json, run_tests
 
 numpy = numpy_or_skip()
 TEAPOT, CUBE, MOEBIUS = map(mesh, ("teapot", "cube", "moebius"))
@@ -18,8 +17,7 @@ class Simplify(CommandCase):
         """Its faces, and the spacing of the lattice."""
         self.works("surface %s -o %s --report report.json" % (words, output))
         self.works("info %s --require %s" % (output, SURFACE))
-        with open("report.json") as file:
-            report = json.load(file)
+        report = read_json("report.json")
         return report["surface"]["faces"], report["lattice"]["spacing"][0]
 
     def farthest(self, of, to):
@@ -54,8 +52,7 @@ class Simplify(CommandCase):
         self.works("surface %s -o a.ply --resolution 12 --orient auto" % TEAPOT)
         for most in ("0", "-0", "1e-12", "1e-300"):
             self.works("surface %s -o b.ply --resolution 12 --orient auto --simplify %s" % (TEAPOT, most))
-            with open("a.ply", "rb") as a, open("b.ply", "rb") as b:
-                self.assertEqual(a.read(), b.read(), most)
+            self.assertEqual(read("a.ply"), read("b.ply"), most)
 
     def test_any_distance_leaves_a_solid(self):
         for most in ("0.3", "10", "1e300"):
@@ -67,8 +64,7 @@ class Simplify(CommandCase):
         written = []
         for threads in ("1", "3"):
             self.surface("%s --resolution 14 --orient auto --simplify 0.1 --threads %s" % (TEAPOT, threads), "a.ply")
-            with open("a.ply", "rb") as file:
-                written.append(file.read())
+            written.append(read("a.ply"))
         self.assertEqual(*written)
 
     def test_what_is_no_distance(self):

@@ -6,11 +6,10 @@ than one goes.
 """
 
 import itertools
-import json
 import math
 import os
 
-from command_case import CommandCase, mesh, numpy_or_skip, run, run_tests
+from command_case import CommandCase, mesh, numpy_or_skip, read, read_json, run, run_tests
 
 numpy = numpy_or_skip()
 CUBE, CUBES, OPEN_BOX, MOEBIUS, SOUP, TEAPOT = map(
@@ -59,8 +58,7 @@ class Solid(CommandCase):
             reports = []
             for command in ("surface %s -o surface.ply", "lattice %s -o solid.npy --field solid"):
                 self.works((command % options) + " --padding 2v --report report.json")
-                with open("report.json") as file:
-                    reports.append(json.load(file)["surface"])
+                reports.append(read_json("report.json")["surface"])
             self.assertEqual(*reports)
 
     def test_is_continuous_across_holes(self):
@@ -97,26 +95,22 @@ class Solid(CommandCase):
         for name in ("open_box", "teapot"):
             for threads in (1, 3):
                 self.works("lattice meshes/%s.obj -o %s.vdb --threads %d %s" % (name, name, threads, options))
-                with open(name + ".vdb", "rb") as one, open("out/%s.vdb" % name, "rb") as other:
-                    self.assertEqual(one.read(), other.read(), (name, threads))
+                self.assertEqual(read(name + ".vdb"), read("out/%s.vdb" % name), (name, threads))
 
     def test_every_format_has_it(self):
         for ending in ("csv", "npy", "vti", "nrrd", "nii", "nii.gz", "vdb"):
             self.works("lattice %s -o a.%s --field solid --resolution 6" % (OPEN_BOX, ending))
-        with open("a.csv") as file:
-            self.assertEqual(file.readline(), "i,j,k,x,y,z,solid\n")
+        self.assertTrue(read("a.csv").startswith(b"i,j,k,x,y,z,solid\n"))
 
     def test_is_verified_and_reported(self):
         words = " -o a.npz --resolution 9 --field sdf,solid --verify 100 --report report.json"
         for mesh in (OPEN_BOX, CUBE):
             self.works("lattice " + mesh + words)
-            with open("report.json") as file:
-                report = json.load(file)
+            report = read_json("report.json")
             self.assertEqual(report["verify"]["samples"], 100)
             self.assertLess(report["verify"]["largest_distance_difference"], 1e-12)
             self.works("surface %s -o a.ply --resolution 9 --report report.json" % mesh)
-            with open("report.json") as file:
-                self.assertEqual(report["surface"], json.load(file)["surface"])
+            self.assertEqual(report["surface"], read_json("report.json")["surface"])
         self.assertLess(abs(report["surface"]["hole_area"]), 1e-12)
 
     def test_what_has_no_surface_is_refused(self):
@@ -131,8 +125,7 @@ class Solid(CommandCase):
             self.refused("lattice %s -o a.vdb --field solid %s --quiet" % (mesh, options), status, reason)
             self.assertFalse(os.path.exists("a.vdb"))
         self.assertEqual(run("batch %s %s --out-dir out --field solid --resolution 5" % (SOUP, CUBE)).returncode, 5)
-        with open("out/results.csv") as file:
-            self.assertIn(",invalid,2,", file.read())
+        self.assertIn(b",invalid,2,", read("out/results.csv"))
 
     def test_points_and_slices_have_none(self):
         reason = "--field solid: is the distance to a surface between samples of a lattice, expected raycone lattice"

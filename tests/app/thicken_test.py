@@ -7,7 +7,7 @@ boxes and plates that have grown, by Steiner's formula; and `info --require`.
 import json
 import math
 
-from command_case import SURFACE, CommandCase, mesh, numpy_or_skip, run, run_tests
+from command_case import SURFACE, CommandCase, mesh, numpy_or_skip, read, read_json, run, run_tests, write
 
 numpy = numpy_or_skip()
 CUBE, TEAPOT, MOEBIUS, SOUP = map(mesh, ("cube", "teapot", "moebius", "soup"))
@@ -16,17 +16,15 @@ CUBE, TEAPOT, MOEBIUS, SOUP = map(mesh, ("cube", "teapot", "moebius", "soup"))
 class Thicken(CommandCase):
     def setUp(self):
         super().setUp()
-        with open("sheet.obj", "w") as file:
-            file.write("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+        write("sheet.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
 
     def test_progress_makes_room_for_warnings(self):
         # Two plates, one of them thinner than a voxel.
-        with open("plates.obj", "w") as file:
-            for z in (0.0, 1.0, 1.5, 1.501):
-                file.write("v 0 0 %g\nv 2 0 %g\nv 2 2 %g\nv 0 2 %g\n" % (z, z, z, z))
-            for n in (0, 8):
-                for face in ("4 3 2 1", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"):
-                    file.write("f %s\n" % " ".join(str(int(corner) + n) for corner in face.split()))
+        plates = "".join("v 0 0 %g\nv 2 0 %g\nv 2 2 %g\nv 0 2 %g\n" % (z, z, z, z) for z in (0.0, 1.0, 1.5, 1.501))
+        for n in (0, 8):
+            for face in ("4 3 2 1", "5 6 7 8", "1 2 6 5", "2 3 7 6", "3 4 8 7", "4 1 5 8"):
+                plates += "f %s\n" % " ".join(str(int(corner) + n) for corner in face.split())
+        write("plates.obj", plates)
         result = run("surface plates.obj -o a.ply --resolution 8 --progress always")
         self.assertEqual(result.returncode, 0)
         # Each write of a line begins by erasing the one before.
@@ -37,8 +35,7 @@ class Thicken(CommandCase):
         """Its part of the report, and its volume."""
         self.works("surface %s -o %s --report report.json" % (words, output))
         self.works("info %s --require %s" % (output, SURFACE))
-        with open("report.json") as file:
-            surface = json.load(file)["surface"]
+        surface = read_json("report.json")["surface"]
         return surface, json.loads(self.works("info %s --json" % output))["signed_volume"]
 
     def test_volumes_are_steiners(self):
@@ -55,8 +52,7 @@ class Thicken(CommandCase):
     def test_no_point_is_elsewhere(self):
         for mesh in (MOEBIUS, SOUP, TEAPOT + " --orient auto"):
             self.surface("%s --thicken .05 --resolution 20 --rule abs=1e9" % mesh)  # nothing but what is near
-            with open("a.ply", "rb") as file:
-                data = file.read()
+            data = read("a.ply")
             count = int(data.split(b"element vertex ")[1].split()[0])
             begin = data.index(b"end_header\n") + 11
             points = numpy.frombuffer(data[begin : begin + 24 * count]).reshape(-1, 3)
@@ -68,8 +64,7 @@ class Thicken(CommandCase):
 
     def test_each_axis_grows_by_its_own_voxels(self):
         self.surface("sheet.obj --thicken .1 --voxel-size .05,.2,.01")
-        with open("report.json") as file:
-            lattice = json.load(file)["lattice"]
+        lattice = read_json("report.json")["lattice"]
         # A layer around the sheet's box, [0, 1] x [0, 1] x 0, and what .1 takes.
         self.assertEqual(lattice["index_min"], [-3, -2, -11])
         self.assertEqual(lattice["index_max"], [23, 7, 11])
@@ -94,8 +89,7 @@ class Thicken(CommandCase):
         written = []
         for threads in ("1", "3"):
             self.surface("%s --resolution 16 --thicken .1 --threads %s" % (MOEBIUS, threads))
-            with open("a.ply", "rb") as file:
-                written.append(file.read())
+            written.append(read("a.ply"))
         self.assertEqual(*written)
 
     def test_what_is_no_thickness(self):
@@ -108,9 +102,8 @@ class Thicken(CommandCase):
         self.assertIn("--thicken is more than a million voxels", result.stderr.decode())
 
     def test_layers_beyond_double_precision_name_the_file(self):
-        with open("huge.obj", "w") as file:
-            file.write("v -8.9e307 0 0\nv 8.9e307 0 0\nv 0 8.9e307 0\nv 0 0 8.9e307\n"
-                       "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+        write("huge.obj", "v -8.9e307 0 0\nv 8.9e307 0 0\nv 0 8.9e307 0\nv 0 0 8.9e307\n"
+                          "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
         for words in ("surface huge.obj -o a.ply --resolution 8",
                       "lattice huge.obj -o a.npy --field solid --dtype f64 --resolution 8"):
             result = run(words)

@@ -9,7 +9,7 @@ import os
 import random
 import zipfile
 
-from command_case import CommandCase, mesh, run, run_tests
+from command_case import CommandCase, mesh, read, read_json, run, run_tests, write
 
 CUBE, TEAPOT = map(mesh, ("cube", "teapot"))
 TURNED = """NRRD0004
@@ -30,16 +30,14 @@ class VolumeInfo(CommandCase):
         return json.loads(self.info("%s --json" % name))
 
     def test_what_each_format_says(self):
-        with open("turned.nrrd", "w") as file:
-            file.write(TURNED)
+        write("turned.nrrd", TURNED)
         for lattice in ("--voxel-size .25,.5,.125 --padding 2v", "--like turned.nrrd"):
             for name, form, array in (("a.vdb", "OpenVDB", ("inside", "bool")), ("a.npz", "NPZ", ("inside", "|b1")),
                                       ("a.nrrd", "NRRD", ("inside", "uint8")), ("a.nii", "NIfTI-1", ("", "uint8")),
                                       ("a.nii.gz", "NIfTI-1", ("", "uint8"))):
                 words = "lattice %s -o %s --field inside --rule abs=.5 --scale 2 --report r.json %s"
                 self.works(words % (CUBE, name, lattice))
-                with open("r.json") as file:
-                    report = json.load(file)
+                report = read_json("r.json")
                 facts = self.facts(name)
                 self.assertEqual(facts["format"], form)
                 self.assertEqual((facts["arrays"][0]["name"], facts["arrays"][0]["type"]), array)
@@ -70,8 +68,7 @@ class VolumeInfo(CommandCase):
             words = "%s %s -o %s %s --threads 1 --report r.json" % (
                 "points" if name == "p.npz" else "lattice", CUBE, name, " ".join(options))
             self.works(words)
-            with open("r.json") as file:
-                report = json.load(file)
+            report = read_json("r.json")
             self.assertEqual(report["command"], words.split() + ["--quiet"], name)
             made = self.facts(name)["made"]
             told = made["options"] if name != "a.vdb" else made["options"].split(" ")
@@ -118,8 +115,7 @@ class VolumeInfo(CommandCase):
             self.assertEqual(told, fields.replace(",", " "), name)
 
     def test_a_file_without_a_place_has_no_lattice(self):
-        with open("a.nrrd", "w") as file:
-            file.write("NRRD0004\ntype: float\ndimension: 2\nsizes: 4 5\nencoding: raw\n\n")
+        write("a.nrrd", "NRRD0004\ntype: float\ndimension: 2\nsizes: 4 5\nencoding: raw\n\n")
         facts = self.facts("a.nrrd")
         self.assertEqual((facts["arrays"], facts["lattice"], facts["made"]),
                          ([{"name": "", "type": "float", "shape": [4, 5]}], None, {}))
@@ -134,15 +130,12 @@ class VolumeInfo(CommandCase):
                          [{"name": "s", "type": kind, "shape": [2]}])
 
     def test_numbers_of_nrrd_may_have_tabs_and_plus_signs(self):
-        with open("plain.nrrd", "w") as file:
-            file.write(TURNED)
-        with open("a.nrrd", "w") as file:
-            file.write(TURNED.replace("sizes: 4 5 6", "sizes: 4\t+5\t6").replace("(.3,.1,0)", "(+.3,+1e-1,\t0)"))
+        write("plain.nrrd", TURNED)
+        write("a.nrrd", TURNED.replace("sizes: 4 5 6", "sizes: 4\t+5\t6").replace("(.3,.1,0)", "(+.3,+1e-1,\t0)"))
         facts = self.facts("a.nrrd")
         self.assertEqual(facts["arrays"][0]["shape"], [4, 5, 6])
         self.assertEqual(facts["lattice"], self.facts("plain.nrrd")["lattice"])
-        with open("a.nrrd", "w") as file:
-            file.write("NRRD0004\ntype: float\ndimension: 3\nsizes: 1 2 3\nspacings: +1.0\t1 +2e0\n\n")
+        write("a.nrrd", "NRRD0004\ntype: float\ndimension: 3\nsizes: 1 2 3\nspacings: +1.0\t1 +2e0\n\n")
         self.assertEqual(self.facts("a.nrrd")["lattice"]["spacing"], [1, 1, 2])
 
     def test_archives_of_others(self):
@@ -159,9 +152,8 @@ class VolumeInfo(CommandCase):
                      "{%s}" % ",".join('"%d": 0' % n for n in range(60000)),
                      '{"\x1b[31m": "\x1b[2J\\n\\u001b"}', '{"a": {"b": {"c": [1, "d"]}}}',
                      '{"transform": null, "a": NaN}'):
-            with open("a.nrrd", "wb") as file:
-                file.write(b"NRRD0004\ntype: float\x1b[31m\ndimension: 3\nsizes: 1 2 3\nspacings: 1 1 1\nraycone:=" +
-                           made.encode("latin1") + b"\n\n")
+            write("a.nrrd", b"NRRD0004\ntype: float\x1b[31m\ndimension: 3\nsizes: 1 2 3\nspacings: 1 1 1\nraycone:=" +
+                            made.encode("latin1") + b"\n\n")
             self.assertEqual(self.facts("a.nrrd")["lattice"]["index_max"], [0, 1, 2], made[:40])
             text = self.info("a.nrrd")
             self.assertNotIn("\x1b", text)
@@ -178,16 +170,14 @@ class VolumeInfo(CommandCase):
         outcomes = set()
         names = ("a.vdb", "a.npz", "a.nrrd", "a.nii")
         for name in names:
-            with open(name, "rb") as file:
-                whole = file.read()
+            whole = read(name)
             for n in range(12):
                 longest = len(whole) if n else 8  # the first one ends before it says what it is
                 content = bytearray(whole[: chance.randrange(longest)] if n % 3 == 0 else whole)
                 for _ in range(chance.randrange(1, 5) if n % 3 else 0):
                     place = chance.randrange(min(len(content), 900))
                     content[place] = chance.choice((0, 255, 127, chance.randrange(256)))
-                with open("b" + name[1:], "wb") as file:
-                    file.write(content)
+                write("b" + name[1:], content)
                 result = run("info b%s --json" % name[1:])
                 self.assertIn(result.returncode, (0, 2), (result.stderr, bytes(content)))
                 self.assertEqual(result.stderr.count(b"\n"), 1 if result.returncode else 0, result.stderr)

@@ -1,4 +1,4 @@
-"""Every input format as .gz and .zst, from files and pipes: python3 compressed_inputs_test.py RAYCONE
+"""Every input format as .gz and .zst, from files and pipes: python3 compressed_inputs_test.py RAYCONE MESH_DIRECTORY
 
 What a compressed file says is what the file itself says. Cut anywhere, or damaged, it is refused in one line.
 """
@@ -10,16 +10,12 @@ import json
 import os
 import struct
 import subprocess
-import sys
-import tempfile
 import threading
-import unittest
 import unittest.mock
 import zipfile
 import zlib
 
-RAYCONE = os.path.abspath(sys.argv.pop(1))
-PATIENCE = 120  # seconds; more hangs, however busy the machine is
+from command_case import PATIENCE, RAYCONE, CommandCase, run_tests, write
 
 # A tetrahedron, and three points in and about it.
 VERTICES = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
@@ -147,26 +143,10 @@ POINT_FILES = {
 }
 
 
-class Compressed(unittest.TestCase):
+class Compressed(CommandCase):
     def setUp(self):
-        directory = tempfile.TemporaryDirectory()
-        self.addCleanup(directory.cleanup)
-        self.addCleanup(os.chdir, "/")
-        os.chdir(directory.name)
-        self.write("t.obj", MESHES["text.obj"])
-
-    def write(self, name, data):
-        with open(name, "wb") as file:
-            file.write(data)
-        return name
-
-    def run_raycone(self, words, **options):
-        return subprocess.run([RAYCONE, *words.split(), "--quiet"], capture_output=True, timeout=PATIENCE, **options)
-
-    def works(self, words, **options):
-        result = self.run_raycone(words, **options)
-        self.assertEqual((result.returncode, result.stderr), (0, b""), words)
-        return result.stdout
+        super().setUp()
+        write("t.obj", MESHES["text.obj"])
 
     def packed(self, name, data):
         # pzstd writes a frame that is to be skipped before each frame.
@@ -180,21 +160,21 @@ class Compressed(unittest.TestCase):
 
     def test_meshes_are_the_same(self):
         for name, data, packed_name, packed in self.packed_in_turn(MESHES):
-            expected = self.works("info %s --json" % self.write(name, data))
+            expected = self.works("info %s --json" % write(name, data))
             self.assertEqual(json.loads(expected)["faces"], 4, name)
             kind = " --mesh-format " + name.split(".")[1]
-            self.assertEqual(self.works("info %s --json" % self.write(packed_name, packed)), expected, packed_name)
+            self.assertEqual(self.works("info %s --json" % write(packed_name, packed)), expected, packed_name)
             self.assertEqual(self.works("info - --json" + kind, input=packed), expected, packed_name)
 
     def test_points_are_the_same(self):
         for name, data in POINT_FILES.items():
-            expected = self.works("points t.obj %s" % self.write(name, data))
+            expected = self.works("points t.obj %s" % write(name, data))
             self.assertEqual(expected.count(b"\n"), 4, name)
             if name == "p.npz":  # is packed itself, and read from its end on
-                self.refused("points t.obj %s" % self.write("p.npz.gz", gzip.compress(data)), "expected a file that is neither")
+                self.refused("points t.obj %s" % write("p.npz.gz", gzip.compress(data)), 2, "expected a file that is neither")
                 continue
             for packed_name, packed in self.packed(name, data):
-                self.assertEqual(self.works("points t.obj %s" % self.write(packed_name, packed)), expected, packed_name)
+                self.assertEqual(self.works("points t.obj %s" % write(packed_name, packed)), expected, packed_name)
         for packed_name, packed in self.packed("p.csv", POINT_FILES["p.csv"]):
             self.assertEqual(self.works("points t.obj -", input=packed), self.works("points t.obj p.csv"), packed_name)
 
@@ -202,9 +182,9 @@ class Compressed(unittest.TestCase):
         """64 KiB of XML are unpacked at a time, 128 of arrays; the byte that ends the data holds the last match,
         too."""
         for n in range(5458, 5475):
-            path = self.write("p.npz", npz(zipfile.ZIP_DEFLATED, npy([(0.0, 0.0, 0.0)] * n)))
+            path = write("p.npz", npz(zipfile.ZIP_DEFLATED, npy([(0.0, 0.0, 0.0)] * n)))
             self.assertEqual(self.works("points t.obj " + path).count(b"\n"), n + 1)
-        expected = self.works("info %s --json" % self.write("t.3mf", three_mf()))
+        expected = self.works("info %s --json" % write("t.3mf", three_mf()))
         tried = 0
         for length in range(0, 130, 13):
             comment = "<!--%s-->" % "".join(chr(48 + 7 * n % 70) for n in range(length))
@@ -216,7 +196,7 @@ class Compressed(unittest.TestCase):
                     continue
                 tried += 1
                 with unittest.mock.patch.object(zipfile, "_get_compressor", lambda *_: fixed_codes()):
-                    self.write("t.3mf", three_mf(model))
+                    write("t.3mf", three_mf(model))
                 self.assertEqual(self.works("info t.3mf --json"), expected, (length, size))
         self.assertGreater(tried, 0)
 
@@ -240,11 +220,6 @@ class Compressed(unittest.TestCase):
         self.assertEqual([answer[:4] for answer in answers], [b"x,y,", b"0.1,", b"1,1,"])
         self.assertEqual(process.returncode, 0)
 
-    def refused(self, words, name, stdout=b""):
-        result = self.run_raycone(words)
-        self.assertEqual((result.returncode, result.stdout or b""), (2, stdout), (words, result.stderr))
-        self.assertRegex(result.stderr.decode(), r"\Araycone: [^\n]*%s[^\n]*\n\Z" % name, words)
-
     def test_cut_and_damaged_ones_are_refused(self):
         for name, data, packed_name, packed in self.packed_in_turn({**MESHES, **POINT_FILES}):
             words = "points t.obj bad" if name in POINT_FILES else "info bad --mesh-format " + name.split(".")[1]
@@ -252,22 +227,22 @@ class Compressed(unittest.TestCase):
                 words = "points t.obj bad." + name.split(".")[1]
             for cut in (len(packed) - 1, len(packed) // 2):
                 with self.subTest(packed_name, cut=cut):
-                    path = self.write(words.split()[2 if words.startswith("points") else 1], packed[:cut])
-                    self.refused(words, path)
+                    path = write(words.split()[2 if words.startswith("points") else 1], packed[:cut])
+                    self.refused(words, 2, path)
             damaged = bytearray(packed)
             damaged[4 if packed_name.endswith("zst") else 2] ^= 0xFF  # of the frame's head, or the method
-            self.refused(words, self.write(path, damaged))
+            self.refused(words, 2, write(path, damaged))
 
     def test_meshes_that_are_packed_twice_are_refused(self):
         for _, _, packed_name, packed in self.packed_in_turn(MESHES):
-            self.refused("info " + self.write(packed_name, gzip.compress(packed)), "is compressed twice, expected once")
+            self.refused("info " + write(packed_name, gzip.compress(packed)), 2, "is compressed twice, expected once")
 
     def test_rows_that_are_only_announced_are_no_full_disk(self):
         for name, content in self.packed("a.npy", npy(announced=1 << 40)):
             for output in ("o.npy", "o.npz", "o.csv", "-"):
                 words = "points t.obj %s --field sdf,inside --format %s -o " % (
-                    self.write(name, content), "npy" if output == "-" else output[2:])
-                self.refused(words + output, name + ":byte ")
+                    write(name, content), "npy" if output == "-" else output[2:])
+                self.refused(words + output, 2, name + ":byte ")
                 self.assertFalse(os.path.exists(output))
 
     def test_damaged_archives_of_arrays_are_refused(self):
@@ -276,14 +251,14 @@ class Compressed(unittest.TestCase):
                 if array != npy() and method == zipfile.ZIP_DEFLATED:
                     continue  # needs a file that can be sought
                 data = bytearray(npz(method, array))
-                self.works("points t.obj %s" % self.write("good.npz", data))
+                self.works("points t.obj %s" % write("good.npz", data))
                 checksum = data.index(b"PK\1\2") + 16  # of the directory
                 data[checksum] ^= 1
-                self.refused("points t.obj %s" % self.write("bad.npz", data), "its bytes do not match their checksum")
+                self.refused("points t.obj %s" % write("bad.npz", data), 2, "its bytes do not match their checksum")
                 if method == zipfile.ZIP_STORED:
                     data[checksum] ^= 1
                     data[data.index(struct.pack("<d", POINTS[1][0])) + 6] ^= 1
-                    self.refused("points t.obj %s" % self.write("bad.npz", data), "its bytes do not match their checksum")
+                    self.refused("points t.obj %s" % write("bad.npz", data), 2, "its bytes do not match their checksum")
         self.works("lattice t.obj -o l.npz --resolution 4")
         with zipfile.ZipFile("l.npz") as archive:
             members = {info.filename: archive.read(info) for info in archive.infolist()}
@@ -294,9 +269,9 @@ class Compressed(unittest.TestCase):
                     archive.writestr(member, content)
             data = bytearray(file.getvalue())
             data[data.index(members[name]) + len(members[name]) - 1] ^= 1
-            self.refused("lattice t.obj --like %s -o m.npy" % self.write("damaged.npz", data), "damaged.npz: %s" % name)
+            self.refused("lattice t.obj --like %s -o m.npy" % write("damaged.npz", data), 2, "damaged.npz: %s" % name)
             self.assertFalse(os.path.exists("m.npy"))
 
 
 if __name__ == "__main__":
-    unittest.main()
+    run_tests()

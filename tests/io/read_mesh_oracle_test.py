@@ -149,6 +149,56 @@ def strips_of(r, count):
     return row[:-1] if r.random() < 0.5 else row, triangles
 
 
+class Ply:
+    """A header and a body, in one encoding, to which elements are added. A property is (type, name, whether it is a
+    list)."""
+
+    def __init__(self, r, encoding):
+        self.r, self.encoding = r, encoding
+        self.count_type = r.choice(["uchar", "int8", "uint", "int", "float32"])
+        self.surplus = encoding == "ascii" and r.random() < 0.2  # words behind the numbers of a row
+        self.split = encoding == "ascii" and not self.surplus and r.random() < 0.2  # into lines
+        self.header, self.body = "", b""
+
+    def add(self, element, properties, rows):
+        """`rows`: what readers ask for, by name; anything for all other properties."""
+        self.header += "element %s %d\n" % (element, len(rows))
+        for kind_of, name, is_list in properties:
+            self.header += "property " + ("list %s " % self.count_type if is_list else "") + "%s %s\n" % (kind_of, name)
+        for own in rows:
+            self.add_row(properties, own)
+
+    def add_row(self, properties, own):
+        numbers = []
+        for kind_of, name, is_list in properties:
+            if is_list:
+                numbers += [(self.count_type, len(own.get(name, (1, 2))))] + [(kind_of, i) for i in own.get(name, (1, 2))]
+            else:
+                numbers.append((kind_of, own[name] if name in own else self.r.randrange(100)))
+        if self.encoding == "ascii":
+            text = [number(self.r, x) if isinstance(x, float) else str(x) for _, x in numbers]
+            glue = self.r.choice([" ", "\n"]) if self.split else self.r.choice([" ", "\t", "  "])
+            self.body += (glue.join(text) + (" 1 2 red" if self.surplus and self.r.random() < 0.3 else "") + "\n").encode()
+            return
+        sign = "<" if self.encoding == "binary_little_endian" else ">"
+        for kind_of, x in numbers:
+            code = PLY_TYPES[kind_of]
+            self.body += struct.pack(sign + code, float(x) if code in "fd" else int(x))
+
+    def content(self):
+        comment = self.r.choice(["", "comment made by hand\n", "obj_info 3\n", "units mm\n"])
+        lines = "ply\nformat %s 1.0\n%s%send_header\n" % (self.encoding, comment, self.header)
+        end = self.r.choice(["\n", "\r\n", "\r"])
+        body = self.body.replace(b"\n", end.encode()) if self.encoding == "ascii" else self.body
+        return lines.replace("\n", end).encode() + body
+
+
+def shuffled_with_others(r, properties):
+    """Among up to two that nobody asks for."""
+    others = [(r.choice(list(PLY_TYPES)), "extra%d" % i, r.random() < 0.3) for i in range(r.choice([0, 0, 1, 2]))]
+    return r.sample(properties + others, len(properties + others))
+
+
 def ply(r, kind, vertices, polygons):
     encoding = r.choice(["ascii", "binary_little_endian", "binary_big_endian"])
     if encoding == "ascii":
@@ -156,80 +206,26 @@ def ply(r, kind, vertices, polygons):
     else:
         coordinate = r.choice({"int8": ["char", "int16", "int", "float32", "float64"], "float": ["float", "double"],
                                "double": ["double"]}[kind])
-    types = list(PLY_TYPES)
-    extra = lambda n: [(r.choice(types), "extra%d" % i, r.random() < 0.3) for i in range(r.choice([0, 0, 1, 2])) for _ in [n]]
     index_type = r.choice(["uchar", "int", "uint16", "short", "float", "double"])
-    count_type = r.choice(["uchar", "int8", "uint", "int", "float32"])
-    order = [(coordinate, axis, False) for axis in "xyz"] + extra("v")
-    r.shuffle(order)
-    listed = [(index_type, r.choice(["vertex_indices", "vertex_index"]), True)] + extra("f")
-    r.shuffle(listed)
-    surplus = encoding == "ascii" and r.random() < 0.2
-    split = encoding == "ascii" and not surplus and r.random() < 0.2
-    body = b""
-
-    def write(numbers):  # of (type, value)
-        nonlocal body
-        if encoding == "ascii":
-            text = [number(r, x) if isinstance(x, float) else str(x) for _, x in numbers]
-            glue = r.choice([" ", "\n"]) if split else r.choice([" ", "\t", "  "])
-            body += (glue.join(text) + (" 1 2 red" if surplus and r.random() < 0.3 else "") + "\n").encode()
-        else:
-            sign = "<" if encoding == "binary_little_endian" else ">"
-            for kind_of, x in numbers:
-                code = PLY_TYPES[kind_of]
-                body += struct.pack(sign + code, float(x) if code in "fd" else int(x))
-
-    def row(properties, own):
-        numbers = []
-        for kind_of, name, is_list in properties:
-            if name in own and is_list:
-                numbers += [(count_type, len(own[name]))] + [(kind_of, i) for i in own[name]]
-            elif name in own:
-                numbers.append((kind_of, own[name]))
-            elif is_list:
-                numbers += [(count_type, 2), (kind_of, 1), (kind_of, 2)]
-            else:
-                numbers.append((kind_of, r.randrange(100)))
-        write(numbers)
-
-    def properties_text(properties):
-        return "".join("property " + ("list %s " % count_type if is_list else "") + "%s %s\n" % (kind_of, name)
-                       for kind_of, name, is_list in properties)
-
-    strip_type = r.choice(["int", "short", "int8", "float"])
-    strips = [(strip_type, "vertex_indices", True)]
+    index_name = r.choice(["vertex_indices", "vertex_index"])
+    file, triangles = Ply(r, encoding), []
     elements = ["vertex", "face"] + r.choice([[], ["edge"], ["tristrips"], ["tristrips", "edge"]])
-    r.shuffle(elements)
-    header, triangles = "", []
-    names = [name for _, name, _ in listed]
-    index_name = "vertex_indices" if "vertex_indices" in names else "vertex_index"
-    for element in elements:
+    for element in r.sample(elements, len(elements)):
         if element == "vertex":
-            header += "element vertex %d\n" % len(vertices) + properties_text(order)
-            for v in vertices:
-                row(order, dict(zip("xyz", v)))
+            file.add(element, shuffled_with_others(r, [(coordinate, axis, False) for axis in "xyz"]),
+                     [dict(zip("xyz", v)) for v in vertices])
         elif element == "face":
-            header += "element face %d\n" % len(polygons) + properties_text(listed)
-            for p in polygons:
-                row(listed, {index_name: p})
-                triangles += fan(p)
+            file.add(element, shuffled_with_others(r, [(index_type, index_name, True)]),
+                     [{index_name: p} for p in polygons])
+            triangles += [t for p in polygons for t in fan(p)]
         elif element == "edge":
-            header += "element edge 2\nproperty int vertex1\nproperty int vertex2\n"
-            row([("int", "vertex1", False), ("int", "vertex2", False)], {})
-            row([("int", "vertex1", False), ("int", "vertex2", False)], {})
+            file.add(element, [("int", "vertex1", False), ("int", "vertex2", False)], [{}, {}])
         else:
-            header += "element tristrips 1\n" + properties_text(strips)
             indices, made = strips_of(r, len(vertices))
-            row(strips, {"vertex_indices": indices})
+            strip_type = r.choice(["int", "short", "int8", "float"])
+            file.add(element, [(strip_type, "vertex_indices", True)], [{"vertex_indices": indices}])
             triangles += made
-    lines = "ply\nformat %s 1.0\n%s%send_header\n" % (
-        encoding, r.choice(["", "comment made by hand\n", "obj_info 3\n", "units mm\n"]), header)
-    end = r.choice(["\n", "\r\n", "\r"])
-    if encoding == "ascii":
-        body = body.replace(b"\n", end.encode())
-    content = lines.replace("\n", end).encode() + body
-    return "ply", content, [tuple(vertices[i] for i in t) for t in triangles]
+    return "ply", file.content(), [tuple(vertices[i] for i in t) for t in triangles]
 
 
 # --- glTF
@@ -275,32 +271,18 @@ class Buffer:
         return len(self.accessors) - 1
 
 
-def gltf(r, kind, vertices, polygons):
-    buffer = Buffer()
-    if kind == "int8":
-        component, stored = r.choice([5120, 5122, 5126]), [tuple(map(int, v)) for v in vertices]
-        shown = [tuple(map(float, v)) for v in stored]
-    else:
-        component, stored = 5126, [tuple(rounded_to_float(x) if abs(x) < 1e38 else 1.0 for x in v) for v in vertices]
-        shown = stored
-    positions = buffer.accessor(r, stored, component, "VEC3")
-    mode = r.choice([4, 5, 6])
-    corners = [i for p in polygons for t in fan(p) for i in t] if mode == 4 else [i for p in polygons for i in p]
-    primitive = {"attributes": {"POSITION": positions}}
-    if mode != 4 or r.random() < 0.5:
-        primitive["mode"] = mode
-    if r.random() < 0.2:
-        corners = list(range(len(vertices)))
-    else:
-        primitive["indices"] = buffer.accessor(r, [(i,) for i in corners], r.choice([5121, 5123, 5125]), "SCALAR")
+def faces_of_mode(mode, corners):
+    """Of a primitive: triangles, a strip or a fan."""
     if mode == 4:
-        faces = [tuple(corners[i:i + 3]) for i in range(0, len(corners) - 2, 3)]
-    elif mode == 5:
-        faces = [(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]) for i in range(len(corners) - 2)]
-    else:
-        faces = [(corners[0], corners[i], corners[i + 1]) for i in range(1, len(corners) - 1)]
+        return [tuple(corners[i:i + 3]) for i in range(0, len(corners) - 2, 3)]
+    if mode == 5:
+        return [(corners[i], corners[i + 1 + i % 2], corners[i + 2 - i % 2]) for i in range(len(corners) - 2)]
+    return [(corners[0], corners[i], corners[i + 1]) for i in range(1, len(corners) - 1)]
+
+
+def shown_by_nodes(r, faces, vertices):
+    """Nodes, and the triangles that they show. They scale by powers of two: nothing is rounded."""
     nodes, triangles = [], []
-    # Powers of two: nothing is rounded.
     for _ in range(r.randint(1, 3)):
         scale = [r.choice([1, 2, 0.5, -1, -4]) for _ in range(3)]
         node = {"mesh": 0}
@@ -317,16 +299,39 @@ def gltf(r, kind, vertices, polygons):
         flipped = scale[0] * scale[1] * scale[2] < 0
         for a, b, c in faces:
             t = (a, c, b) if flipped else (a, b, c)
-            triangles.append(tuple(tuple(x * s + 0.0 for x, s in zip(shown[i], scale)) for i in t))
+            triangles.append(tuple(tuple(x * s + 0.0 for x, s in zip(vertices[i], scale)) for i in t))
+    return nodes, triangles
+
+
+def glb(document, data):
+    text = json.dumps(document).encode()
+    text += b" " * (-len(text) % 4)
+    data += b"\0" * (-len(data) % 4)
+    chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(data), b"BIN\0") + data
+    return b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks
+
+
+def gltf(r, kind, vertices, polygons):
+    buffer = Buffer()
+    if kind == "int8":
+        component, stored = r.choice([5120, 5122, 5126]), [tuple(map(int, v)) for v in vertices]
+    else:
+        component, stored = 5126, [tuple(rounded_to_float(x) if abs(x) < 1e38 else 1.0 for x in v) for v in vertices]
+    primitive = {"attributes": {"POSITION": buffer.accessor(r, stored, component, "VEC3")}}
+    mode = r.choice([4, 5, 6])
+    if mode != 4 or r.random() < 0.5:
+        primitive["mode"] = mode
+    if r.random() < 0.2:
+        corners = list(range(len(vertices)))
+    else:
+        corners = [i for p in polygons for t in fan(p) for i in t] if mode == 4 else [i for p in polygons for i in p]
+        primitive["indices"] = buffer.accessor(r, [(i,) for i in corners], r.choice([5121, 5123, 5125]), "SCALAR")
+    nodes, triangles = shown_by_nodes(r, faces_of_mode(mode, corners), [tuple(map(float, v)) for v in stored])
     document = {"asset": {"version": "2.0"}, "scenes": [{"nodes": list(range(len(nodes)))}], "nodes": nodes,
                 "meshes": [{"primitives": [primitive]}], "accessors": buffer.accessors, "bufferViews": buffer.views,
                 "buffers": [{"byteLength": len(buffer.bytes)}]}
     if r.random() < 0.5:
-        text = json.dumps(document).encode()
-        text += b" " * (-len(text) % 4)
-        binary = buffer.bytes + b"\0" * (-len(buffer.bytes) % 4)
-        chunks = struct.pack("<I4s", len(text), b"JSON") + text + struct.pack("<I4s", len(binary), b"BIN\0") + binary
-        return "glb", b"glTF" + struct.pack("<II", 2, 12 + len(chunks)) + chunks, triangles
+        return "glb", glb(document, buffer.bytes), triangles
     document["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64.b64encode(buffer.bytes).decode()
     return "gltf", json.dumps(document, indent=r.choice([None, 1])).encode(), triangles
 

@@ -79,6 +79,57 @@ def print_percentiles(rows):
         print("| %s | %s |" % (name, " | ".join(number_format % number for number in at)))
 
 
+class Measurement:
+    """Surfaces made of meshes, what is wrong with them, and a row of the table for each that was made as PLY."""
+
+    def __init__(self, arguments, work):
+        self.raycone, self.directory, self.work = arguments.raycone, arguments.directory, work
+        self.report = os.path.join(work, "report.json")
+        self.options = ["--report", self.report, "--orient", "auto", "--resolution", str(arguments.resolution),
+                        "--timeout", str(arguments.timeout), "--quiet"]
+        self.refused, self.failed, self.limits, self.rows, self.left_out, self.made = [], [], [], [], 0, 0
+
+    def add(self, path):
+        for ending in ("ply", "stl"):
+            out = os.path.join(self.work, "out." + ending)
+            status, errors, seconds = measured([self.raycone, "surface", path, "-o", out, *self.options])
+            if status == 2:
+                self.left_out += 1
+                return
+            if status != 0:
+                self.tell(self.limits if status == 4 else self.failed, path, ending, errors)
+                if status == 4:
+                    return
+                continue
+            self.made += 1
+            checked = subprocess.run([self.raycone, "info", out, "--require", REQUIRED], capture_output=True)
+            if checked.returncode != 0:
+                self.tell(self.refused, path, ending, checked.stderr.decode().strip())
+            if ending == "ply":
+                self.add_row(path, out, seconds)
+
+    def tell(self, of_its_kind, *what):
+        of_its_kind.append(what)
+        print(*what, file=sys.stderr, flush=True)
+
+    def add_row(self, path, out, seconds):
+        with open(self.report) as file:
+            run = json.load(file)
+        facts = subprocess.run([self.raycone, "info", path, "--json"], capture_output=True, check=True).stdout
+        area, surface, voxel = json.loads(facts)["surface_area"], run["surface"], min(run["lattice"]["spacing"])
+        row = {"surface faces": surface["faces"], "parts": surface["components"],
+               "max. distance, voxels": surface["max_distance"] / voxel, "holes, %": 100 * surface["hole_area"] / area,
+               "dropped, %": 100 * surface["dropped_area"] / area, "CPU, s": seconds,
+               "peak, MB": run["peak_memory_bytes"] / 2**20}
+        there = distances(self.raycone, out, path, self.work, sources_of(out))
+        back = distances(self.raycone, path, out, self.work)
+        names = ("surface to mesh, max.", "surface to mesh, rms", "mesh to surface, max.", "mesh to surface, rms")
+        row.update(zip(names, (off / voxel for off in there + back)))
+        self.rows.append(row)
+        print("| %s | %d | %d | %d | %d | %.2g | %.2g | %.2g | %.1f | %.0f | %.2g | %.2g | %.2g | %.2g |" % (
+            os.path.relpath(path, self.directory), run["faces"], run["exterior_edges"], *row.values()), flush=True)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("raycone")
@@ -87,60 +138,18 @@ def main():
     parser.add_argument("--most-bytes", type=int, default=1_000_000)
     parser.add_argument("--timeout", type=int, default=60)
     arguments = parser.parse_args()
-    refused, failed, limits, rows, left_out, made = [], [], [], [], 0, 0
     print("| mesh | faces | boundary edges | surface faces | parts | max. distance, voxels | holes, % | "
           "dropped, % | CPU, s | peak, MB | surface to mesh, max. | rms | mesh to surface, max. | rms |")
     print("|---" * 14 + "|")
     with tempfile.TemporaryDirectory() as work:
+        all_of_them = Measurement(arguments, work)
         for path in meshes_in(arguments.directory, arguments.most_bytes):
-            report = os.path.join(work, "report.json")
-            for ending in ("ply", "stl"):
-                out = os.path.join(work, "out." + ending)
-                status, errors, seconds = measured(
-                    [arguments.raycone, "surface", path, "-o", out, "--report", report, "--orient", "auto",
-                     "--resolution", str(arguments.resolution), "--timeout", str(arguments.timeout), "--quiet"])
-                if status == 4:
-                    limits.append((path, ending, errors))
-                    print(*limits[-1], file=sys.stderr, flush=True)
-                    break
-                if status == 2:
-                    left_out += 1
-                    break
-                if status != 0:
-                    failed.append((path, ending, errors))
-                    print(*failed[-1], file=sys.stderr, flush=True)
-                    continue
-                made += 1
-                checked = subprocess.run([arguments.raycone, "info", out, "--require", REQUIRED], capture_output=True)
-                if checked.returncode != 0:
-                    refused.append((path, ending, checked.stderr.decode().strip()))
-                    print(*refused[-1], file=sys.stderr, flush=True)
-                if ending == "stl":
-                    continue
-                with open(report) as file:
-                    run = json.load(file)
-                area = json.loads(subprocess.run([arguments.raycone, "info", path, "--json"], capture_output=True,
-                                                 check=True).stdout)["surface_area"]
-                surface = run["surface"]
-                voxel = min(run["lattice"]["spacing"])
-                row = {"surface faces": surface["faces"], "parts": surface["components"],
-                       "max. distance, voxels": surface["max_distance"] / voxel,
-                       "holes, %": 100 * surface["hole_area"] / area,
-                       "dropped, %": 100 * surface["dropped_area"] / area, "CPU, s": seconds,
-                       "peak, MB": run["peak_memory_bytes"] / 2**20}
-                there = distances(arguments.raycone, out, path, work, sources_of(out))
-                back = distances(arguments.raycone, path, out, work)
-                row.update(zip(("surface to mesh, max.", "surface to mesh, rms", "mesh to surface, max.",
-                                "mesh to surface, rms"),
-                               (off / voxel for off in there + back)))
-                rows.append(row)
-                print("| %s | %d | %d | %d | %d | %.2g | %.2g | %.2g | %.1f | %.0f | %.2g | %.2g | %.2g | %.2g |" % (
-                    os.path.relpath(path, arguments.directory), run["faces"], run["exterior_edges"], *row.values()),
-                      flush=True)
-    if rows:
-        print_percentiles(rows)
+            all_of_them.add(path)
+    if all_of_them.rows:
+        print_percentiles(all_of_them.rows)
+    refused, failed = all_of_them.refused, all_of_them.failed
     print("\n%d surfaces made, %d refused by `info --require`, %d errors; %d meshes have no inside or cannot be read, %d "
-          "met a limit." % (made, len(refused), len(failed), left_out, len(limits)))
+          "met a limit." % (all_of_them.made, len(refused), len(failed), all_of_them.left_out, len(all_of_them.limits)))
     return 1 if refused or failed else 0
 
 

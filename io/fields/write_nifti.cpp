@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "core/data/coordinate_precision.h"
 #include "io/fields/format_writers.h"
 #include "io/fields/image_writer.h"
 #include "io/fields/nifti_fields.h"
@@ -47,8 +48,7 @@ bool fits_float(const Vec3& v) {
 
 constexpr double kMostDisplaced = 0.0625;  // voxels: less than anybody sees
 
-double in_32_bits(double number) { return static_cast<double>(static_cast<float>(number)); }
-Vec3 in_32_bits(const Vec3& v) { return {in_32_bits(v.x), in_32_bits(v.y), in_32_bits(v.z)}; }
+Vec3 in_32_bits(const Vec3& v) { return rounded_to(CoordinatePrecision::kSingle, v); }
 
 // How far a sample is displaced at most, in voxels, where the first one and the steps are these.
 double displacement(const PlacedLattice& lattice, const Vec3& first, const std::array<Vec3, 3>& steps) {
@@ -101,7 +101,7 @@ void put_rotation(NiftiHeadBytes& head, const PlacedLattice& lattice) {
   std::array<Vec3, 3> decoded = columns_of({static_cast<double>(b), static_cast<double>(c), static_cast<double>(d)});
   if (mirrored) decoded[2] = -1.0 * decoded[2];
   for (std::size_t n = 0; n < 3; ++n) {
-    decoded[n] = in_32_bits(lattice.grid.spacing[static_cast<int>(n)]) * decoded[n];
+    decoded[n] = in_32_bits(lattice.grid.spacing)[static_cast<int>(n)] * decoded[n];
   }
   const Vec3 first = first_sample(lattice);
   if (displacement(lattice, in_32_bits(first), decoded) > kMostDisplaced) return;

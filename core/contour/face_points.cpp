@@ -68,14 +68,20 @@ std::optional<Vec3> inside_face(const Corners3& corners, std::array<double, 3> w
   return corners[0] + (weights[1] / sum) * first + (weights[2] / sum) * second;
 }
 
+// What points of a plane may be off it, where creases of these kinds count.
+double tolerance_of(const SurfaceInCells& surface, CreaseKinds kinds) {
+  if (kinds == CreaseKinds::kNotFine) return surface.tolerance;
+  return std::min(surface.tolerance, fine_tolerance(surface.cells.lattice()));
+}
+
 // Whether the surface is bent between the two points, of different sources.
-bool disagree(const FaceEdges& face, double tolerance, double margin) {
+bool disagree(const FaceEdges& face, const SurfaceInCells& surface, CreaseKinds kinds) {
   const EdgePoint &p = *face.points[0], &q = *face.points[1];
   const Vec3 step = q.position - p.position;
   const Vec3 first = face.corners[1] - face.corners[0], second = face.corners[2] - face.corners[0];
-  const double moved = 2.0 * margin * std::sqrt(std::max(dot(first, first), dot(second, second)));
+  const double moved = 2.0 * surface.margins.inner * std::sqrt(std::max(dot(first, first), dot(second, second)));
   // Where one of the points lies on both planes, so does the straight line between them on one.
-  const double same = tolerance + moved;
+  const double same = tolerance_of(surface, kinds) + moved;
   return (p.source == kHole || std::abs(dot(face.normals[0], step)) > same) &&
          (q.source == kHole || std::abs(dot(face.normals[1], step)) > same);
 }
@@ -106,18 +112,18 @@ std::optional<Vec3> within_face(const FaceEdges& face, const Vec3& hit, double m
 // Where the mesh leads from one point to the other by way of other triangles: the points of the creases in between.
 // Each must be farther along the straight line between the two than the one before, so that lines between them do not
 // cross.
-PointsOfFace section_points(const FaceEdges& face, CreasesHere& creases, double unit, double margin) {
-  constexpr double kAhead = 32.0;  // units
+PointsOfFace section_points(const FaceEdges& face, CreasesHere& creases, const SurfaceInCells& surface) {
+  constexpr double kAhead = 32.0;  // margins
   const EdgePoint &p = *face.points[0], &q = *face.points[1];
   if (p.source == kHole || q.source == kHole) return {};
   const CreasesHere::Section section =
       creases.section(face.corners, static_cast<std::uint32_t>(p.source), static_cast<std::uint32_t>(q.source));
   const Vec3 along = q.position - p.position;
-  const double least = kAhead * unit * std::sqrt(dot(along, along));
+  const double least = kAhead * surface.largest_margin() * std::sqrt(dot(along, along));
   PointsOfFace points;
   const Vec3* last = &p.position;
   for (std::size_t n = 0; n < section.size; ++n) {
-    const std::optional<Vec3> point = within_face(face, section.corners[n].position, margin);
+    const std::optional<Vec3> point = within_face(face, section.corners[n].position, surface.margins.inner);
     if (!point || !(dot(*point - *last, along) > least)) return {};
     points.add(*point, section.corners[n].beyond);
     last = &points.positions[n];
@@ -133,11 +139,11 @@ std::optional<Vec3> crease_point(const FaceEdges& face, CreasesHere& creases, do
 }
 
 // Whether the planes at the points meet on a crease: there it is in both as well as numbers can tell.
-std::optional<Vec3> meeting_on_crease(const FaceEdges& face, CreasesHere& creases, double tolerance, double unit,
-                                      double margin, CreaseKinds kinds = CreaseKinds::kNotFine) {
+std::optional<Vec3> meeting_on_crease(const FaceEdges& face, CreasesHere& creases, const SurfaceInCells& surface,
+                                      CreaseKinds kinds) {
   // The margin and rounding move points off the mesh by less than this.
-  const double near = 4.0 * (tolerance + unit);
-  const std::optional<Vec3> meeting = meeting_in_face(face, margin);
+  const double near = 4.0 * (tolerance_of(surface, kinds) + surface.largest_margin());
+  const std::optional<Vec3> meeting = meeting_in_face(face, surface.margins.inner);
   return meeting && creases.has_hit_near(face.corners, *meeting, near, kinds) ? meeting : std::nullopt;
 }
 
@@ -154,12 +160,10 @@ std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint3
 
 std::optional<Vec3> face_point(const SurfaceInCells& surface, std::uint32_t cell, std::size_t face,
                                CreasesHere& creases) {
-  const double margin = surface.margins.inner;
   const auto edges = edges_of_two(surface, cell, kuhn::kFaces[face]);
-  if (!edges || !disagree(*edges, surface.tolerance, margin)) return std::nullopt;
-  const std::optional<Vec3> meeting =
-      meeting_on_crease(*edges, creases, surface.tolerance, surface.largest_margin(), margin);
-  return meeting ? meeting : crease_point(*edges, creases, margin);
+  if (!edges || !disagree(*edges, surface, CreaseKinds::kNotFine)) return std::nullopt;
+  const std::optional<Vec3> meeting = meeting_on_crease(*edges, creases, surface, CreaseKinds::kNotFine);
+  return meeting ? meeting : crease_point(*edges, creases, surface.margins.inner);
 }
 
 FacePoints::FacePoints(const SurfaceInCells& surface, PointsOfFaces kind) : kind_(kind) {
@@ -186,38 +190,33 @@ FacePoints::FacePoints(const SurfaceInCells& surface, PointsOfFaces kind) : kind
 
 void FacePoints::add_section(const SurfaceInCells& surface, std::uint32_t cell, std::size_t face,
                              CreasesHere& creases) {
-  const double tolerance = surface.tolerance, margin = surface.margins.inner, unit = surface.largest_margin();
   const auto edges = edges_of_two(surface, cell, kuhn::kFaces[face]);
-  if (!edges) return;
-  const double fine = std::min(tolerance, fine_tolerance(surface.cells.lattice()));
-  if (!disagree(*edges, fine, margin)) return;
+  if (!edges || !disagree(*edges, surface, CreaseKinds::kAll)) return;
   const std::uint64_t number = number_of_face(cell, face);
-  const bool is_bent = disagree(*edges, tolerance, margin);
+  const bool is_bent = disagree(*edges, surface, CreaseKinds::kNotFine);
   std::optional<Vec3> one;
-  if (is_bent) one = meeting_on_crease(*edges, creases, tolerance, unit, margin, CreaseKinds::kNotFine);
+  if (is_bent) one = meeting_on_crease(*edges, creases, surface, CreaseKinds::kNotFine);
   if (one) {
     add(number, *one);
     return;
   }
   PointsOfFace more;
-  one = meeting_on_crease(*edges, creases, fine, unit, margin, CreaseKinds::kAll);
+  one = meeting_on_crease(*edges, creases, surface, CreaseKinds::kAll);
   if (one) {
     more.add(*one, 0);
   } else {
-    more = section_points(*edges, creases, unit, margin);
+    more = section_points(*edges, creases, surface);
   }
   if (more.size > 0) sections_.push_back(number);
   for (std::size_t n = 0; n < more.size; ++n) {
-    const Vec3& position = more.positions[n];
-    const std::uint32_t beyond = more.beyond[n];
     if (n + 1 < more.size) {
       const auto point = static_cast<std::uint32_t>(faces_.size());
-      pieces_.push_back({point, {position, static_cast<std::int32_t>(beyond)}});
+      pieces_.push_back({point, {more.positions[n], static_cast<std::int32_t>(more.beyond[n])}});
     }
-    add(number, position);
+    add(number, more.positions[n]);
   }
   if (more.size > 0 || !is_bent) return;
-  one = crease_point(*edges, creases, margin);
+  one = crease_point(*edges, creases, surface.margins.inner);
   if (one) add(number, *one);
 }
 

@@ -226,8 +226,8 @@ void EdgePointFinder::set_roots() {
 }  // namespace
 
 std::vector<EdgePoint> edge_points(const TriangleMesh& mesh, const RuleAlong& rule, const SurfaceCells& cells,
-                                   const CellTriangles& triangles, const SurfaceMargins& margins) {
-  return EdgePointFinder(mesh, rule, cells, triangles, margins.inner).find();
+                                   const CellTriangles& triangles, double margin) {
+  return EdgePointFinder(mesh, rule, cells, triangles, margin).find();
 }
 
 }  // namespace raycone

@@ -17,17 +17,12 @@ struct EdgePoint {
   std::int32_t source = kHole;  // the triangle that the edge leaves the inside by
 };
 
-// How far points stay away from where they may not be, as fractions of an edge, or of barycentric coordinates of a
-// face or a cell.
-struct SurfaceMargins {
-  double inner = 0x1p-30;
-};
-
 // For each mixed edge the point nearest to its inside end where the rule ceases to hold: on the first triangle that
 // carries the winding number across, or where it passes a threshold by itself, as it does in holes. Positions are moved
-// by no more than the margin. The same for any number of threads. Needs rule, cells and triangles of this mesh.
+// by no more than the margin, which is how far they stay away from the edge's ends, as a fraction of the edge. The same
+// for any number of threads. Needs rule, cells and triangles of this mesh.
 [[nodiscard]] std::vector<EdgePoint> edge_points(const TriangleMesh& mesh, const RuleAlong& rule,
                                                  const SurfaceCells& cells, const CellTriangles& triangles,
-                                                 const SurfaceMargins& margins);
+                                                 double margin);
 
 }  // namespace raycone

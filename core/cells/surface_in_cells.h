@@ -9,17 +9,17 @@
 
 namespace raycone {
 
-// Refers to cells, points and creases, which must outlive it.
+// Refers to cells, points and creases, which must outlive it. Points stay away by a margin from where they may not be.
 struct SurfaceInCells {
   const SurfaceCells& cells;
   std::span<const EdgePoint> edge_points;
   const CellCreases& creases;
   double tolerance;  // plane_tolerance(), world units
-  SurfaceMargins margins;
+  double margin;     // a fraction of an edge, or of barycentric coordinates of a face or a cell
 
-  // The margin where edges are short, and where they are long, world units.
-  [[nodiscard]] double least_margin() const { return margins.inner * cells.lattice().least_spacing(); }
-  [[nodiscard]] double largest_margin() const { return margins.inner * cells.lattice().largest_spacing(); }
+  // That where edges are short, and where they are long, world units.
+  [[nodiscard]] double least_margin() const { return margin * cells.lattice().least_spacing(); }
+  [[nodiscard]] double largest_margin() const { return margin * cells.lattice().largest_spacing(); }
 };
 
 }  // namespace raycone

@@ -341,7 +341,7 @@ CellContour::LoopPoints CellContour::points_of(const Loop& loop, const Vec3& ori
 // Near the middle of the loop. Relative to the tetrahedron's first corner.
 std::optional<Vec3> CellContour::point_on_crease(const LoopPoints& points, const BarycentricCoordinates& within,
                                                  const kuhn::Tetrahedron& tetrahedron) {
-  std::optional<Vec3> point = creases_.nearest_end_within(within, points.middle, surface_.margins.inner);
+  std::optional<Vec3> point = creases_.nearest_end_within(within, points.middle, surface_.margin);
   if (!point && points.face_points == 1) point = crease_exit(within.corners(), tetrahedron, points.middle);
   if (!point) point = creases_.nearest_within(within, points.middle);
   // Points of sections may be on fine ones alone.
@@ -363,9 +363,9 @@ CellContour::Apex CellContour::apex_of(const Loop& loop, const kuhn::Tetrahedron
   const std::optional<Vec3> meeting =
       common_point(std::span(points.planes).first(points.count), target, surface_.tolerance);
   const auto off_square = [&] { return dot(*meeting - target, *meeting - target); };
-  const bool meets = meeting && within.is_within(*meeting, surface_.margins.inner) &&
+  const bool meets = meeting && within.is_within(*meeting, surface_.margin) &&
                      (!on_mesh || off_square() <= kSamePlace * surface_.tolerance * surface_.tolerance);
-  return {corners[0] + (meets ? *meeting : within.moved_within(target, surface_.margins.inner)), on_mesh};
+  return {corners[0] + (meets ? *meeting : within.moved_within(target, surface_.margin)), on_mesh};
 }
 
 }  // namespace

@@ -79,7 +79,7 @@ bool disagree(const FaceEdges& face, const SurfaceInCells& surface, CreaseKinds 
   const EdgePoint &p = *face.points[0], &q = *face.points[1];
   const Vec3 step = q.position - p.position;
   const Vec3 first = face.corners[1] - face.corners[0], second = face.corners[2] - face.corners[0];
-  const double moved = 2.0 * surface.margins.inner * std::sqrt(std::max(dot(first, first), dot(second, second)));
+  const double moved = 2.0 * surface.margin * std::sqrt(std::max(dot(first, first), dot(second, second)));
   // Where one of the points lies on both planes, so does the straight line between them on one.
   const double same = tolerance_of(surface, kinds) + moved;
   return (p.source == kHole || std::abs(dot(face.normals[0], step)) > same) &&
@@ -123,7 +123,7 @@ PointsOfFace section_points(const FaceEdges& face, CreasesHere& creases, const S
   PointsOfFace points;
   const Vec3* last = &p.position;
   for (std::size_t n = 0; n < section.size; ++n) {
-    const std::optional<Vec3> point = within_face(face, section.corners[n].position, surface.margins.inner);
+    const std::optional<Vec3> point = within_face(face, section.corners[n].position, surface.margin);
     if (!point || !(dot(*point - *last, along) > least)) return {};
     points.add(*point, section.corners[n].beyond);
     last = &points.positions[n];
@@ -143,7 +143,7 @@ std::optional<Vec3> meeting_on_crease(const FaceEdges& face, CreasesHere& crease
                                       CreaseKinds kinds) {
   // The margin and rounding move points off the mesh by less than this.
   const double near = 4.0 * (tolerance_of(surface, kinds) + surface.largest_margin());
-  const std::optional<Vec3> meeting = meeting_in_face(face, surface.margins.inner);
+  const std::optional<Vec3> meeting = meeting_in_face(face, surface.margin);
   return meeting && creases.has_hit_near(face.corners, *meeting, near, kinds) ? meeting : std::nullopt;
 }
 
@@ -163,7 +163,7 @@ std::optional<Vec3> face_point(const SurfaceInCells& surface, std::uint32_t cell
   const auto edges = edges_of_two(surface, cell, kuhn::kFaces[face]);
   if (!edges || !disagree(*edges, surface, CreaseKinds::kNotFine)) return std::nullopt;
   const std::optional<Vec3> meeting = meeting_on_crease(*edges, creases, surface, CreaseKinds::kNotFine);
-  return meeting ? meeting : crease_point(*edges, creases, surface.margins.inner);
+  return meeting ? meeting : crease_point(*edges, creases, surface.margin);
 }
 
 FacePoints::FacePoints(const SurfaceInCells& surface, PointsOfFaces kind) : kind_(kind) {
@@ -216,7 +216,7 @@ void FacePoints::add_section(const SurfaceInCells& surface, std::uint32_t cell, 
     add(number, more.positions[n]);
   }
   if (more.size > 0 || !is_bent) return;
-  one = crease_point(*edges, creases, surface.margins.inner);
+  one = crease_point(*edges, creases, surface.margin);
   if (one) add(number, *one);
 }
 

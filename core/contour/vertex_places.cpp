@@ -58,8 +58,8 @@ class ChainPlace {
 }  // namespace
 
 std::uint64_t misplaced_vertices(const ContourPoints& points, const SurfaceCells& cells, const FacePoints& face_points,
-                                 std::span<const std::uint64_t> tetrahedra, const SurfaceMargins& margins) {
-  const ChainPlace place(cells, margins.inner);
+                                 std::span<const std::uint64_t> tetrahedra, double margin) {
+  const ChainPlace place(cells, margin);
   const auto as_written = [&](const Vec3& p) { return rounded_to(points.precision, p); };
   const auto at_edges = [&](std::size_t n) {
     const SurfaceCell& cell = cells.cells()[n];

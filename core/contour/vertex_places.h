@@ -24,6 +24,6 @@ struct ContourPoints {
 // are of; `tetrahedra`: ContouredSurface::tetrahedra. The same for any number of threads.
 [[nodiscard]] std::uint64_t misplaced_vertices(const ContourPoints& points, const SurfaceCells& cells,
                                                const FacePoints& face_points, std::span<const std::uint64_t> tetrahedra,
-                                               const SurfaceMargins& margins);
+                                               double margin);
 
 }  // namespace raycone

@@ -59,30 +59,30 @@ class SurfaceMaker {
     const double least = surface_margin(inside_.lattice(), options_.precision);
     Attempt last;
     for (const double factor : kWidened) {
-      const SurfaceMargins margins{std::min(factor * least, kMostMargin)};
-      find_points(margins);
+      const double margin = std::min(factor * least, kMostMargin);
+      find_points(margin);
       if (may_use_polygons()) {
-        Attempt first = attempt(points_of_sections(margins), margins, {.cells = ContourCells::kPolygons});
+        Attempt first = attempt(points_of_sections(margin), margin, {.cells = ContourCells::kPolygons});
         if (first.cuts_nodes_off && factor == 1.0) {
-          if (std::optional<FinishedSurface> other = beside_nodes(margins, first.faces / 2))
+          if (std::optional<FinishedSurface> other = beside_nodes(margin, first.faces / 2))
             first.made = std::move(other);
         }
         if (first.made) return *std::move(first.made);
       }
-      FacePoints sharp(in_cells(margins));
+      FacePoints sharp(in_cells(margin));
       for (int round = 0; round < kRounds; ++round) {
         if (may_use_polygons()) {
-          last = attempt(sharp, margins, {.cells = ContourCells::kPolygons});
+          last = attempt(sharp, margin, {.cells = ContourCells::kPolygons});
           if (last.made) return *std::move(last.made);
         }
-        last = attempt(sharp, margins, {});
-        if (last.is_sharpened && !last.made) last = attempt(sharp, margins, {.sharpens = false});
+        last = attempt(sharp, margin, {});
+        if (last.is_sharpened && !last.made) last = attempt(sharp, margin, {.sharpens = false});
         if (last.made) return *std::move(last.made);
         const std::vector<bool> dropped = involved(sharp, last);
         if (std::ranges::find(dropped, true) == dropped.end()) break;  // another round would be the same
         sharp = sharp.without(dropped);
       }
-      if (margins.inner == kMostMargin) break;  // and so would another margin
+      if (margin == kMostMargin) break;  // and so would another margin
     }
     throw SurfaceFailure(described(last.faults.value_or(SurfaceFaults())));
   }
@@ -106,40 +106,40 @@ class SurfaceMaker {
     TriangleMesh failed{};                  // that surface, where it has any
   };
 
-  void find_points(const SurfaceMargins& margins) {
-    points_ = options_.thickness > 0.0 ? thick_edge_points(rule_, distance_, options_.thickness, cells_, margins)
-                                       : edge_points(mesh_, rule_, cells_, triangles_, margins);
+  void find_points(double margin) {
+    points_ = options_.thickness > 0.0 ? thick_edge_points(rule_, distance_, options_.thickness, cells_, margin)
+                                       : edge_points(mesh_, rule_, cells_, triangles_, margin);
   }
 
   // Merged only: by a lattice that is moved by a part of a voxel, which `most` faces or more would not be worth.
-  [[nodiscard]] std::optional<FinishedSurface> beside_nodes(const SurfaceMargins& margins, std::size_t most) {
+  [[nodiscard]] std::optional<FinishedSurface> beside_nodes(double margin, std::size_t most) {
     SurfaceOptions merge_only = options_;
     merge_only.simplify = 0.0;
     const auto merged_surface = [&](const Lattice& moved) -> std::optional<SurfaceMesh> {
       const NodeSet nodes = nodes_inside(evaluators_.rough, options_.rule, moved);
       if (nodes.empty() || nodes.reaches_border()) return std::nullopt;
       SurfaceMaker maker({mesh_, evaluators_, nodes, merge_only});
-      maker.find_points(margins);
-      Attempt made = maker.attempt(maker.points_of_sections(margins), margins, {.cells = ContourCells::kPolygons});
+      maker.find_points(margin);
+      Attempt made = maker.attempt(maker.points_of_sections(margin), margin, {.cells = ContourCells::kPolygons});
       if (!made.made || !made.made->merged) return std::nullopt;
       return std::move(made.made->surface);
     };
     std::vector<Vec3> points(points_.size());
     std::ranges::transform(points_, points.begin(), &EdgePoint::position);
-    const SurfaceBounds limits = bounds(margins);
+    const SurfaceBounds limits = bounds(margin);
     std::optional<SurfaceMesh> surface =
         surface_beside_nodes(mesh_, inside_, points,
-                             {kNearCorner * margins.inner * inside_.lattice().least_spacing(),
+                             {kNearCorner * margin * inside_.lattice().least_spacing(),
                               most_merging(limits.margin, limits.merge_tolerance()), most, options_.precision},
                              merged_surface);
     if (!surface) return std::nullopt;
     FinishedSurface made{*std::move(surface)};
-    if (options_.simplify > 0.0) simplify(made, margins);
+    if (options_.simplify > 0.0) simplify(made, margin);
     return made;
   }
 
-  [[nodiscard]] SurfaceInCells in_cells(const SurfaceMargins& margins) const {
-    return {cells_, points_, creases_, tolerance_, margins};
+  [[nodiscard]] SurfaceInCells in_cells(double margin) const {
+    return {cells_, points_, creases_, tolerance_, margin};
   }
 
   // What thickens has points off the mesh.
@@ -147,8 +147,8 @@ class SurfaceMaker {
 
   // Several points of a face help where the surface is polygons then. Cones of tetrahedra would only have more
   // triangles.
-  [[nodiscard]] FacePoints points_of_sections(const SurfaceMargins& margins) const {
-    const SurfaceInCells surface = in_cells(margins);
+  [[nodiscard]] FacePoints points_of_sections(double margin) const {
+    const SurfaceInCells surface = in_cells(margin);
     FacePoints sharp(surface, PointsOfFaces::kSections);
     sharp.keep_sections_at(polygons_at_sections(surface, sharp), surface);
     return sharp;
@@ -160,27 +160,26 @@ class SurfaceMaker {
 
   // The merged surface is checked as a whole. The one before is checked only if undoing does not soon mend what that
   // has, or nothing is merged.
-  Attempt attempt(const FacePoints& sharp, const SurfaceMargins& margins, const AttemptOptions& how) {
+  Attempt attempt(const FacePoints& sharp, double margin, const AttemptOptions& how) {
     enter("joining them by triangles");
-    auto [surface, tetrahedra, first_apex, fewer] = contour(in_cells(margins), sharp, how.cells);
+    auto [surface, tetrahedra, first_apex, fewer] = contour(in_cells(margin), sharp, how.cells);
     round_to(options_.precision, surface.mesh.vertices);
     Attempt result;
     const ContourPoints made_of{points_, sharp.positions(), std::span(surface.mesh.vertices).subspan(first_apex),
                                 options_.precision};
-    const std::uint64_t places = misplaced_vertices(made_of, cells_, sharp, tetrahedra, margins);
+    const std::uint64_t places = misplaced_vertices(made_of, cells_, sharp, tetrahedra, margin);
     // Sharpening looks at sources, and moves faces into planes of others. Merging keeps them, so that it changes no
     // area of theirs.
     settler_.settle(surface);
-    if (how.sharpens && places == 0 && options_.thickness == 0.0)
-      result.is_sharpened = sharpen(surface, margins, fewer);
+    if (how.sharpens && places == 0 && options_.thickness == 0.0) result.is_sharpened = sharpen(surface, margin, fewer);
     if (result.is_sharpened) settler_.settle(surface);
     if ((places > 0 || !options_.merge_planes) && !is_right(surface, places, result)) return result;
     FinishedSurface made{std::move(surface)};
-    if (options_.merge_planes) made.merged = merge(made.surface, margins, how.cells, result);
+    if (options_.merge_planes) made.merged = merge(made.surface, margin, how.cells, result);
     if (options_.merge_planes && !made.merged && how.cells == ContourCells::kPolygons) return result;
     if (result.faults && !result.faults->none()) return result;
     if (!made.merged && !is_right(made.surface, places, result)) return result;
-    if (options_.simplify > 0.0) simplify(made, margins);
+    if (options_.simplify > 0.0) simplify(made, margin);
     result.made = std::move(made);
     return result;
   }
@@ -195,37 +194,37 @@ class SurfaceMaker {
     return attempt.faults->none();
   }
 
-  bool merge(SurfaceMesh& surface, const SurfaceMargins& margins, ContourCells kind, Attempt& attempt) const {
+  bool merge(SurfaceMesh& surface, double margin, ContourCells kind, Attempt& attempt) const {
     enter("merging the triangles of a plane");
+    const SurfaceBounds limits = bounds(margin);
     const auto is_right_unmerged = [&] { return is_right(surface, 0, attempt); };
     CheckedMerge result = checked_merge(
         surface, mesh_, inside_,
-        {margins.inner, bounds(margins).merge_tolerance(), options_.precision, kind == ContourCells::kPolygons},
-        is_right_unmerged);
-    const double margin = bounds(margins).margin;
-    attempt.cuts_nodes_off = result.cuts_nodes_off && is_of_planes(surface, mesh_, std::max(kOff * margin, tolerance_));
+        {margin, limits.merge_tolerance(), options_.precision, kind == ContourCells::kPolygons}, is_right_unmerged);
+    const double off = std::max(kOff * limits.margin, tolerance_);
+    attempt.cuts_nodes_off = result.cuts_nodes_off && is_of_planes(surface, mesh_, off);
     if (result.surface) surface = *std::move(result.surface);
     attempt.faces = surface.sources.size();
     return result.surface.has_value();
   }
 
   // Sharp edges that the lattice does not see. What they become is checked, for they leave their cells.
-  [[nodiscard]] bool sharpen(SurfaceMesh& surface, const SurfaceMargins& margins, std::uint64_t fewer) const {
+  [[nodiscard]] bool sharpen(SurfaceMesh& surface, double margin, std::uint64_t fewer) const {
     constexpr double kReach = 2.0;  // voxels
     const Lattice& lattice = inside_.lattice();
-    const SharpenLimits limits{std::max(kOff * margins.inner * lattice.largest_spacing(), tolerance_),
+    const SharpenLimits limits{std::max(kOff * margin * lattice.largest_spacing(), tolerance_),
                                kReach * lattice.least_spacing(), options_.precision, fewer};
     const SharpenInput input{mesh_, normals_, distance_};
     const bool is_pulled = checked_sharpen(surface, input, inside_, limits);
     return fill_corner_gaps(surface, input, lattice, limits) || is_pulled;
   }
 
-  [[nodiscard]] SurfaceBounds bounds(const SurfaceMargins& margins) const {
-    return {margins.inner * inside_.lattice().largest_spacing(), tolerance_, options_.simplify};
+  [[nodiscard]] SurfaceBounds bounds(double margin) const {
+    return {margin * inside_.lattice().largest_spacing(), tolerance_, options_.simplify};
   }
 
-  void simplify(FinishedSurface& made, const SurfaceMargins& margins) const {
-    simplify_surface(made, inside_, bounds(margins).farthest_pull(), options_, settler_);
+  void simplify(FinishedSurface& made, double margin) const {
+    simplify_surface(made, inside_, bounds(margin).farthest_pull(), options_, settler_);
   }
 
   // The face points of cells with faces that intersect. Where faults are of other kinds, all of them. `attempt`: of

@@ -76,13 +76,13 @@ void insert_near(NodeSet& nodes, const DistanceEvaluator& distance, double thick
 }
 
 std::vector<EdgePoint> thick_edge_points(const RuleAlong& rule, const DistanceEvaluator& distance, double thickness,
-                                         const SurfaceCells& cells, const SurfaceMargins& margins) {
+                                         const SurfaceCells& cells, double margin) {
   const ThickRule thick(rule, distance, thickness, cells.lattice().least_spacing());
   std::vector<Bracket> brackets = mixed_edges(cells);
   find_roots(brackets, [&](const std::vector<Vec3>& places) { return thick.at(places); });
   std::vector<Vec3> places;
   for (const Bracket& bracket : brackets) {
-    places.push_back(bracket.edge.point(std::clamp(bracket.root, margins.inner, 1.0 - margins.inner)));
+    places.push_back(bracket.edge.point(std::clamp(bracket.root, margin, 1.0 - margin)));
   }
   const std::vector<bool> at_thickness = thick.at_thickness(places);
   std::vector<std::uint32_t> nearest(places.size());

@@ -17,7 +17,6 @@ void insert_near(NodeSet& nodes, const DistanceEvaluator& distance, double thick
 // As edge_points(), for the set where the rule holds or that is no farther than `thickness` from the mesh. Where the
 // distance ends it, `source` is the nearest triangle.
 [[nodiscard]] std::vector<EdgePoint> thick_edge_points(const RuleAlong& rule, const DistanceEvaluator& distance,
-                                                       double thickness, const SurfaceCells& cells,
-                                                       const SurfaceMargins& margins);
+                                                       double thickness, const SurfaceCells& cells, double margin);
 
 }  // namespace raycone

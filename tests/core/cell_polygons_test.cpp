@@ -28,7 +28,7 @@ using test::Random;
 using test::uniform;
 using test::volume_of;
 
-constexpr SurfaceMargins kMargins;
+constexpr double kMargin = 0x1p-30;
 
 Vec3 random_vector(Random& random) {
   return {uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0), uniform(random, -1.0, 1.0)};
@@ -61,16 +61,16 @@ struct Cells {
         cells(nodes),
         triangles(mesh, cells),
         creases(mesh, normals, triangles, cells),
-        points(edge_points(mesh, {WindingNumberEvaluator(mesh), Rule{}}, cells, triangles, kMargins)),
+        points(edge_points(mesh, {WindingNumberEvaluator(mesh), Rule{}}, cells, triangles, kMargin)),
         tolerance(plane_tolerance(mesh, lattice)) {
     face_points = FacePoints(in_cells(), kind);
   }
 
-  [[nodiscard]] SurfaceInCells in_cells() const { return {cells, points, creases, tolerance, kMargins}; }
+  [[nodiscard]] SurfaceInCells in_cells() const { return {cells, points, creases, tolerance, kMargin}; }
   [[nodiscard]] ContouredSurface contoured(ContourCells kind) const { return contour(in_cells(), face_points, kind); }
   [[nodiscard]] std::uint64_t misplaced(const ContouredSurface& of) const {
     const std::span apexes = std::span(of.surface.mesh.vertices).subspan(of.first_apex);
-    return misplaced_vertices({points, face_points.positions(), apexes}, cells, face_points, of.tetrahedra, kMargins);
+    return misplaced_vertices({points, face_points.positions(), apexes}, cells, face_points, of.tetrahedra, kMargin);
   }
 };
 

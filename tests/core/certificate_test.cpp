@@ -19,7 +19,7 @@ namespace raycone {
 namespace {
 
 using test::compacted;
-using test::kSurfaceMargins;
+using test::kSurfaceMargin;
 using test::lattice_off_origin;
 using test::misplaced;
 using test::nodes_where;
@@ -62,7 +62,7 @@ TEST(SurfaceCertificate, FindsEachFault) {
   const NodeSet nodes = nodes_where(lattice_off_origin(5), [](auto i, auto j, auto k) { return i + j + k < 6; });
   const SurfaceCells cells(nodes);
   const SurfaceMesh surface =
-      contour({cells, random_edge_points(cells, random, true), {}, 0.0, kSurfaceMargins}, {}).surface;
+      contour({cells, random_edge_points(cells, random, true), {}, 0.0, kSurfaceMargin}, {}).surface;
   ASSERT_TRUE(faults_of(surface.mesh, nodes).none());
   TriangleMesh open = surface.mesh;
   open.triangles.pop_back();
@@ -92,7 +92,7 @@ TEST(SurfaceCertificate, FindsFaultsNearAChange) {
     const NodeSet nodes = nodes_where(lattice, [&](auto i, auto j, auto k) { return i + j + k < 9 + round % 4; });
     const SurfaceCells cells(nodes);
     TriangleMesh mesh =
-        contour({cells, random_edge_points(cells, random, false), {}, 0.0, kSurfaceMargins}, {}).surface.mesh;
+        contour({cells, random_edge_points(cells, random, false), {}, 0.0, kSurfaceMargin}, {}).surface.mesh;
     const SurfaceEdit change = random_change(mesh, random, round % 2 == 0, round % 4 < 2 ? 0.3 : 3.0);
     change.apply(mesh);
     const SurfaceFaults all = faults_of(compacted(mesh.vertices, without_gone(mesh).triangles), nodes);
@@ -181,7 +181,7 @@ TEST(SurfaceCertificate, FindsVerticesOutOfPlace) {
   const SurfaceCells cells(nodes);
   const FacePoints face_points = random_face_points(cells, random);
   const auto [surface, tetrahedra, first_apex, fewer] =
-      contour({cells, random_edge_points(cells, random, false), {}, 0.0, kSurfaceMargins}, face_points);
+      contour({cells, random_edge_points(cells, random, false), {}, 0.0, kSurfaceMargin}, face_points);
   const std::vector<Vec3>& vertices = surface.mesh.vertices;
   EXPECT_EQ(misplaced(vertices, cells, face_points, tetrahedra), 0U);
   EXPECT_EQ(first_apex, cells.edges() + face_points.positions().size());

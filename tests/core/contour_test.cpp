@@ -16,7 +16,7 @@
 namespace raycone {
 namespace {
 
-using test::kSurfaceMargins;
+using test::kSurfaceMargin;
 using test::lattice_off_origin;
 using test::misplaced;
 using test::nodes_where;
@@ -32,7 +32,7 @@ SurfaceFaults faults_of_random_surface(const NodeSet& nodes, Random& random, boo
   const SurfaceCells cells(nodes);
   const std::vector<EdgePoint> points = random_edge_points(cells, random, !with_face_points);
   const FacePoints face_points = with_face_points ? random_face_points(cells, random) : FacePoints();
-  const auto [surface, tetrahedra, first_apex, fewer] = contour({cells, points, {}, 0.0, kSurfaceMargins}, face_points);
+  const auto [surface, tetrahedra, first_apex, fewer] = contour({cells, points, {}, 0.0, kSurfaceMargin}, face_points);
   SurfaceFaults faults = faults_of(surface.mesh, nodes);
   faults.places = misplaced(surface.mesh.vertices, cells, face_points, tetrahedra);
   return faults;
@@ -65,7 +65,7 @@ TEST(Contour, IsFreeOfIntersectionsByTheDefinition) {
     for (const bool with_face_points : {false, true}) {
       const std::vector<EdgePoint> points = random_edge_points(cells, random, !with_face_points);
       const FacePoints face_points = with_face_points ? random_face_points(cells, random) : FacePoints();
-      TriangleMesh mesh = contour({cells, points, {}, 0.0, kSurfaceMargins}, face_points).surface.mesh;
+      TriangleMesh mesh = contour({cells, points, {}, 0.0, kSurfaceMargin}, face_points).surface.mesh;
       ASSERT_TRUE(test::exact_self_intersections(mesh).empty()) << label;
       if (label > 1) continue;
       const Vec3 across = mesh.vertices[mesh.triangles.back()[0]];

@@ -26,8 +26,8 @@ namespace {
 // Between 0 and 1. Often as near to an end as is allowed, where that is asked for.
 double random_place(Random& random, bool to_margin) {
   const double extremes = to_margin ? uniform(random, 0.0, 4.0) : 4.0;
-  if (extremes < 1.0) return kSurfaceMargins.inner;
-  if (extremes < 2.0) return 1.0 - kSurfaceMargins.inner;
+  if (extremes < 1.0) return kSurfaceMargin;
+  if (extremes < 2.0) return 1.0 - kSurfaceMargin;
   return uniform(random, 0.01, 0.99);
 }
 
@@ -88,7 +88,7 @@ std::uint64_t misplaced(std::span<const Vec3> vertices, const SurfaceCells& cell
   for (std::size_t n = 0; n < edges.size(); ++n) edges[n].position = vertices[n];
   const std::span faces = vertices.subspan(edges.size(), face_points.faces().size());
   const std::span apexes = vertices.subspan(edges.size() + faces.size());
-  return misplaced_vertices({edges, faces, apexes}, cells, face_points, tetrahedra, kSurfaceMargins);
+  return misplaced_vertices({edges, faces, apexes}, cells, face_points, tetrahedra, kSurfaceMargin);
 }
 
 TriangleMesh without_gone(TriangleMesh mesh) {

@@ -15,7 +15,7 @@
 
 namespace raycone::test {
 
-inline constexpr SurfaceMargins kSurfaceMargins;  // those of double precision near the origin
+inline constexpr double kSurfaceMargin = 0x1p-30;  // that of double precision near the origin
 
 // Of side^3 nodes; neither at the origin nor with all its first indices at 0.
 Lattice lattice_off_origin(std::int64_t side, double spacing = 1.0);

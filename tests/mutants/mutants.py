@@ -580,7 +580,7 @@ MUTANTS = [
     Mutant("surface_corners_cut_off", "an apex lies on a corner of the mesh", [
         ("core/cells/cell_creases.cpp", "is_within(from_first, margin)) nearest.add", "is_within(from_first, 9.0 + margin)) nearest.add")]),
     Mutant("surface_planes_only", "a face point lies on a sharp edge even where planes do not meet there", [
-        ("core/contour/face_points.cpp", "return meeting ? meeting : crease_point(*edges, creases, surface.margins.inner);",
+        ("core/contour/face_points.cpp", "return meeting ? meeting : crease_point(*edges, creases, surface.margin);",
          "return meeting;")]),
     Mutant("surface_sections_turned", "both sides of a face have its points in one order", [
         ("core/contour/contour.cpp", "(last < next ? n : count - 1 - n)", "n")]),

@@ -277,48 +277,59 @@ struct Votes {
   }
 };
 
-bool faces_inward(const Mesh& mesh, const Tree& tree, const Patches& patches, const std::vector<std::size_t>& patch,
-                  double part_of_area, double tiny, Random& random) {
-  std::vector<double> areas;
-  for (const std::size_t face : patch)
-    areas.push_back(length(area_vector(mesh, face)) + (areas.empty() ? 0.0 : areas.back()));
-  if (areas.back() == 0.0) return false;
-  Votes front, back;
-  const int rays = std::max(kFewestRays, static_cast<int>(kRaysInAll * part_of_area));
-  for (int ray = 0; ray < rays; ++ray) {
-    const auto drawn = std::ranges::upper_bound(areas, random.uniform() * areas.back()) - areas.begin();
-    const std::size_t face = patch[std::min(static_cast<std::size_t>(drawn), patch.size() - 1)];
-    const Vec normal = (patches.flipped[face] != 0 ? -1.0 : 1.0) * area_vector(mesh, face);
-    const Vec from = point_on(mesh, face, random);
-    front.add(tree.first_hit(from, direction_around(normal, random), tiny));
-    back.add(tree.first_hit(from, direction_around(-1.0 * normal, random), tiny));
-  }
-  return std::pair(front.escaped, front.distance) < std::pair(back.escaped, back.distance);
-}
-
-std::vector<std::uint8_t> flips_of(const Mesh& mesh) {
-  const Patches patches = patches_of(mesh);
-  const Tree tree(mesh);
-  double area = 0.0;
-  for (std::size_t face = 0; face < mesh.faces.size(); ++face) area += length(area_vector(mesh, face));
-  Vec lower = mesh.vertices.front(), upper = lower;
-  for (const Vec& p : mesh.vertices) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      lower[a] = std::min(lower[a], p[a]);
-      upper[a] = std::max(upper[a], p[a]);
+class Voting {
+ public:
+  explicit Voting(const Mesh& mesh) : mesh_(mesh), patches_(patches_of(mesh)), tree_(mesh) {
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) area_ += length(area_vector(mesh, face));
+    Vec lower = mesh.vertices.front(), upper = lower;
+    for (const Vec& p : mesh.vertices) {
+      for (std::size_t a = 0; a < 3; ++a) {
+        lower[a] = std::min(lower[a], p[a]);
+        upper[a] = std::max(upper[a], p[a]);
+      }
     }
+    tiny_ = 1e-9 * length(upper - lower);
   }
-  const double tiny = 1e-9 * length(upper - lower);  // nearer hits are the face itself, or its double
-  Random random;
-  std::vector<std::uint8_t> flips = patches.flipped;
-  for (const std::vector<std::size_t>& patch : patches.faces) {
+
+  std::vector<std::uint8_t> flips() {
+    std::vector<std::uint8_t> flips = patches_.flipped;
+    for (const std::vector<std::size_t>& patch : patches_.faces) {
+      if (!faces_inward(patch)) continue;
+      for (const std::size_t face : patch) flips[face] ^= 1U;
+    }
+    return flips;
+  }
+
+ private:
+  bool faces_inward(const std::vector<std::size_t>& patch) {
+    std::vector<double> areas;  // up to each face
     double part = 0.0;
-    for (const std::size_t face : patch) part += length(area_vector(mesh, face)) / area;
-    if (!faces_inward(mesh, tree, patches, patch, part, tiny, random)) continue;
-    for (const std::size_t face : patch) flips[face] ^= 1U;
+    for (const std::size_t face : patch) {
+      const double area = length(area_vector(mesh_, face));
+      areas.push_back(area + (areas.empty() ? 0.0 : areas.back()));
+      part += area / area_;
+    }
+    if (areas.back() == 0.0) return false;
+    Votes front, back;
+    const int rays = std::max(kFewestRays, static_cast<int>(kRaysInAll * part));
+    for (int ray = 0; ray < rays; ++ray) {
+      const auto drawn = std::ranges::upper_bound(areas, random_.uniform() * areas.back()) - areas.begin();
+      const std::size_t face = patch[std::min(static_cast<std::size_t>(drawn), patch.size() - 1)];
+      const Vec normal = (patches_.flipped[face] != 0 ? -1.0 : 1.0) * area_vector(mesh_, face);
+      const Vec from = point_on(mesh_, face, random_);
+      front.add(tree_.first_hit(from, direction_around(normal, random_), tiny_));
+      back.add(tree_.first_hit(from, direction_around(-1.0 * normal, random_), tiny_));
+    }
+    return std::pair(front.escaped, front.distance) < std::pair(back.escaped, back.distance);
   }
-  return flips;
-}
+
+  const Mesh& mesh_;
+  Patches patches_;
+  Tree tree_;
+  double area_ = 0.0;  // twice that of all faces
+  double tiny_;        // nearer hits are the face itself, or its double
+  Random random_;
+};
 
 }  // namespace
 
@@ -327,7 +338,7 @@ int main(int argc, char** argv) {
     if (argc != 3) throw std::runtime_error("usage: raycone_raycast_voting MESH FLIPS");
     const Mesh mesh = read(argv[1]);
     const auto begin = std::chrono::steady_clock::now();
-    const std::vector<std::uint8_t> flips = flips_of(mesh);
+    const std::vector<std::uint8_t> flips = Voting(mesh).flips();
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     std::ofstream(argv[2], std::ios::binary)
         .write(reinterpret_cast<const char*>(flips.data()), static_cast<std::streamsize>(flips.size()));

@@ -37,13 +37,18 @@ double radius_of(const VoxelIndex& at) { return kVoxel * std::sqrt(at.x * at.x +
 // A ball of radius 2: its signed distance clamped to three voxels.
 double distance_at(const VoxelIndex& at) { return std::clamp(radius_of(at) - 2.0, -3 * kVoxel, 3 * kVoxel); }
 
-template <typename Function>
-auto samples_of(const Lattice& lattice, const Function& function) {
-  std::vector<decltype(function(VoxelIndex()))> numbers;
+template <class Visit>
+void for_each_voxel(const Lattice& lattice, const Visit& visit) {
   for_each_sample(whole(lattice), [&](const LatticeIndex& index) {
     const auto& [i, j, k] = index;
-    numbers.push_back(function(VoxelIndex{static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)}));
+    visit(VoxelIndex{static_cast<int>(i), static_cast<int>(j), static_cast<int>(k)});
   });
+}
+
+template <class Function>
+auto samples_of(const Lattice& lattice, const Function& function) {
+  std::vector<decltype(function(VoxelIndex()))> numbers;
+  for_each_voxel(lattice, [&](const VoxelIndex& at) { numbers.push_back(function(at)); });
   return numbers;
 }
 
@@ -86,11 +91,11 @@ TEST(WriteVdbFields, HoldsEveryFieldUnderItsName) {
   EXPECT_EQ(surface->text("raycone_field"), "sdf");
   EXPECT_FALSE(fog->has_metadata("raycone_rule"));
   std::size_t n = 0;
-  samples_of(lattice, [&](const VoxelIndex& at) {
+  for_each_voxel(lattice, [&](const VoxelIndex& at) {
     EXPECT_EQ(bools->value(at), inside[n] != 0 ? 1 : 0) << at;
     EXPECT_EQ(bools->is_active(at), inside[n] != 0) << at;
     EXPECT_EQ(fog->value(at), static_cast<float>(density[n])) << at;
-    return n++;
+    ++n;
   });
 }
 
@@ -105,12 +110,11 @@ struct RandomDistances {
       if (random() % 3 != 0) return;
       for (double& number : blocks.add(place)) number = std::min(band, 1.5 * band * uniform());
     });
-    samples_of(lattice, [&](const VoxelIndex& at) {
+    for_each_voxel(lattice, [&](const VoxelIndex& at) {
       const LatticeIndex sample{at.x, at.y, at.z};
       const int side = side_of_block[places.number_of({at.x >> 3, at.y >> 3, at.z >> 3})];
       inside.push_back(side == 2 ? random() % 2 : static_cast<std::uint8_t>(side));
       numbers.push_back(inside.back() != 0 ? -blocks.at(sample) : blocks.at(sample));
-      return 0;
     });
   }
   double uniform() { return static_cast<double>(random()) * 0x1p-32; }
@@ -161,10 +165,10 @@ TEST(WriteVdbFields, FlagsThatHoldFarAwayAreTheBackground) {
   EXPECT_EQ(grid->background(), 1);
   EXPECT_EQ(grid->value({1000, 0, 0}), 1);
   std::size_t n = 0;
-  samples_of(lattice_around_zero(), [&](const VoxelIndex& at) {
+  for_each_voxel(lattice_around_zero(), [&](const VoxelIndex& at) {
     EXPECT_EQ(grid->value(at), inside[n] != 0 ? 1 : 0) << at;
     EXPECT_EQ(grid->is_active(at), inside[n] == 0) << at;
-    return n++;
+    ++n;
   });
 }
 
@@ -180,14 +184,13 @@ TEST(WriteVdbFields, HalvesAreRoundedOnce) {
 
 TEST(WriteVdbFields, LevelSetsAreActiveExactlyInTheBand) {
   const auto grid = written_ball(described({kDistance}));
-  samples_of(lattice_around_zero(), [&](const VoxelIndex& at) {
+  for_each_voxel(lattice_around_zero(), [&](const VoxelIndex& at) {
     const double distance = distance_at(at);
     const bool active = std::abs(distance) < 3 * kVoxel;
     const double value = grid->value(at);
     EXPECT_EQ(grid->is_active(at), active) << at;
     EXPECT_NEAR(value, distance, 3e-8) << at;  // half a unit in the last place of 0.3, and that of the background
     EXPECT_EQ(std::abs(value) == grid->background(), !active) << at;
-    return 0;
   });
   EXPECT_EQ(grid->value({1000, 0, 0}), grid->background());
 }
@@ -200,12 +203,11 @@ TEST(WriteVdbFields, LevelSetsOfHalvesAreActiveWhereTheyAreNotTheBackground) {
   write_vdb(directory / "out.vdb", description, {std::span(distances)});
   const auto grid = read_vdb_grid(directory / "out.vdb", "surface");
   std::size_t close = 0;
-  samples_of(lattice_around_zero(), [&](const VoxelIndex& at) {
+  for_each_voxel(lattice_around_zero(), [&](const VoxelIndex& at) {
     const double distance = std::abs(distance_at(at)), value = std::abs(grid->value(at));
     close += grid->is_active(at) && static_cast<double>(nearest_half(distance)) >= grid->background();
     EXPECT_EQ(grid->is_active(at), distance < 3 * kVoxel) << at;
     EXPECT_EQ(value == grid->background(), !grid->is_active(at)) << at;
-    return 0;
   });
   EXPECT_GT(close, 0U);  // the nearest half would have been the background
 }
@@ -268,10 +270,9 @@ TEST(WriteVdbFields, DistancesKeepTheSideOfInside) {
     const auto flags = read_vdb_grid(directory / "out.vdb", "inside", VdbType::kBool);
     const auto grid = read_vdb_grid(directory / "out.vdb", "surface", type);
     std::size_t wrong = 0, inactive = 0;
-    samples_of(lattice_around_zero(), [&](const VoxelIndex& at) {
+    for_each_voxel(lattice_around_zero(), [&](const VoxelIndex& at) {
       wrong += (grid->value(at) < 0) != (flags->value(at) != 0);
       inactive += !grid->is_active(at);
-      return 0;
     });
     EXPECT_EQ(wrong, 0U) << static_cast<int>(precision);
     EXPECT_EQ(inactive, 0U) << static_cast<int>(precision);

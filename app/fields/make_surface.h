@@ -25,7 +25,7 @@ struct MadeSurface {
   Terms terms;                    // that were summed for them and for the surface
 };
 
-// What the surface is of, and what the user has chosen, so that errors advise something else. Both must stay meanwhile.
+// What the surface is of, and what the user has chosen, so that errors advise something else.
 struct MeshToClose {
   const TriangleMesh& mesh;
   const std::vector<ExteriorEdge>& edges;  // of `mesh`

@@ -21,7 +21,8 @@ struct ContourPoints {
 
 // How many of these, before any merging, are not strictly inside of their edge, face or tetrahedron: less than half the
 // margin from its border, or farther off it than a sixteenth of the margin. `face_points` says which faces the points
-// are of; `tetrahedra`: ContouredSurface::tetrahedra. The same for any number of threads.
+// are of; `tetrahedra`: ContouredSurface::tetrahedra; `margin`: SurfaceInCells::margin. The same for any number of
+// threads.
 [[nodiscard]] std::uint64_t misplaced_vertices(const ContourPoints& points, const SurfaceCells& cells,
                                                const FacePoints& face_points, std::span<const std::uint64_t> tetrahedra,
                                                double margin);

@@ -133,7 +133,7 @@ std::optional<FinishedSurface> whole_mesh(const SurfaceInput& input, std::uint64
 // and keep their sides of these so.
 std::optional<FinishedSurface> rounded_mesh(const SurfaceInput& input, std::uint64_t most) {
   const auto& [mesh, evaluators, inside, options] = input;
-  const auto is_as_asked = [&](const Vec3& p) { return rounded_to(options.precision, p) == p; };
+  const auto is_as_asked = [&precision = options.precision](const Vec3& p) { return rounded_to(precision, p) == p; };
   if (options.precision == CoordinatePrecision::kSingle && !std::ranges::all_of(mesh.vertices, is_as_asked)) {
     SurfaceOptions not_above = options;
     not_above.precision = CoordinatePrecision::kSingleNotAbove;

@@ -60,26 +60,39 @@ def with_number(text):
     return lambda: text % number()
 
 
+def with_magnitude(text):
+    return lambda: text % magnitude()
+
+
+def fields(*names):
+    return lambda: ",".join(chance.sample(names, choose([1, 1, 2, len(names)])))
+
+
 # Of each option what makes its value, or None where it takes none.
 MESH = {"--weld": one_of("exact", "none", magnitude), "--scale": number, "--up": one_of("y-to-z"),
-        "--orient": one_of("keep", "flip", "auto")}
+        "--orient": one_of("keep", "flip", "auto"), "--normalize": one_of("cube", "sphere", with_magnitude("cube:%s"))}
 EVALUATION = {
-    "--field": one_of("winding", "inside", "density", "sdf", "winding,inside", "winding,sdf,density,inside"),
+    "--field": fields("winding", "inside", "density", "sdf", "gradient", "label"),
+    "--parts": one_of("group", "component", "file"),
+    "--priority": None,
     "--rule": one_of("nonzero", "positive", "odd", with_number("threshold=%s"), with_number("abs=%s")),
-    "--band": one_of("1", "3", "0.5", magnitude),
+    "--tolerance": one_of("0", "1e-3", magnitude),
     "--diagnostics": None,
     "--verify": one_of("8"),
+    "--dtype": one_of("f16", "f32", "f64"),
+    "--pack-bits": None,
 }
+LATTICE = {"--bounds": box, "--padding": one_of(number, "2v", "-1v", with_number("%sv")), "--centers": None}
 # Those that must not change a value.
 EFFORT = {"--threads": one_of("1", "2", "3", "17"), "--engine": one_of("auto", "scan", "embree"), "--simd": one_of("auto", "sse4")}
 OPTIONS = {
     "lattice": {
         **MESH,
         **EVALUATION,
-        "--field": one_of("winding", "inside", "density", "solid", "winding,inside", "winding,sdf,density,inside"),
-        "--bounds": box,
-        "--padding": one_of(number, "2v", "-1v", with_number("%sv")),
-        "--centers": None,
+        **LATTICE,
+        "--field": fields("winding", "inside", "density", "sdf", "solid", "gradient", "label"),
+        "--band": one_of("1", "3", "0.5", "all", magnitude),
+        "--compress": None,
         "--double": None,
         "--half": None,
     },
@@ -100,21 +113,41 @@ OPTIONS = {
         "--normal": lambda: numbers(3),
         "--origin": lambda: numbers(3),
         "--no-legend": None,
-        "--field": one_of("winding", "inside", "sdf"),
+        "--field": one_of("winding", "inside", "sdf", "label"),
+        "--parts": one_of("group", "component"),
         "--rule": one_of("odd", "abs=0.5"),
+        "--tolerance": one_of("0", magnitude),
+    },
+    "surface": {
+        **MESH,
+        **LATTICE,
+        "--rule": EVALUATION["--rule"],
+        "--thicken": one_of("0.1", magnitude),
+        "--simplify": one_of("0", "none", "0.01", magnitude),
     },
 }
+
+def samples():
+    return choose([["--resolution", choose(["1", "2", "8", "16", "1,1,1", "2,3,4", "1,7,1"])], ["--voxel-size", spacing()]])
+
+
+def draw():
+    return choose(["uniform=50", "surface=50", "near=50:" + magnitude(), "uniform=10,surface=5,near=10:0.1"])
+
+
 ALWAYS = {
-    "lattice": lambda: choose([["--resolution", choose(["1", "2", "8", "16", "1,1,1", "2,3,4", "1,7,1"])], ["--voxel-size", spacing()]]),
+    "lattice": samples,
     "points": lambda: ["points.csv"],
-    "points of a sample": lambda: ["--sample", choose(["uniform=50", "near=50:" + magnitude(), "uniform=10,near=10:0.1"])],
+    "points of a sample": lambda: ["--sample", draw()],
     "slice": lambda: ["--size", choose(["64", "70", "330"])],
+    "surface": samples,
 }
 OUTPUTS = {
-    "lattice": ["out.vdb", "out.csv", "out.npy", "out.vti"],
-    "points": ["out.csv", "out.npy"],
+    "lattice": ["out.vdb", "out.csv", "out.npy", "out.npz", "out.vti", "out.nrrd", "out.nii", "out.nii.gz"],
+    "points": ["out.csv", "out.npy", "out.npz"],
     "points of a sample": ["out.csv", "out.npz"],
     "slice": ["out.png"],
+    "surface": ["out.ply", "out.stl", "out.obj", "out.off"],
 }
 
 
@@ -146,7 +179,7 @@ def try_one(mesh, directory):
     kind = choose(list(OPTIONS))
     output = directory + choose(OUTPUTS[kind])
     arguments = [kind.split()[0], mesh, *ALWAYS[kind](), "-o", output, *some_of(OPTIONS[kind], choose([0, 1, 2, 3, 4, 6]))]
-    effort = {"--threads": EFFORT["--threads"]} if kind == "slice" else EFFORT
+    effort = {"--threads": EFFORT["--threads"]} if kind in ("slice", "surface") else EFFORT
     first = some_of(effort, len(effort))
     second = first
     while sorted(second) == sorted(first):  # else it would be compared with itself

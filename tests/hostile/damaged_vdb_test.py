@@ -8,12 +8,14 @@ random, from a fixed seed, of a file by raycone, whose head tells the lattice, a
 import collections
 import os
 import random
+import resource
 import subprocess
 import sys
 import tempfile
 
 RAYCONE, MESH = (os.path.abspath(path) for path in sys.argv[1:3])
 RUNS = int(sys.argv[3]) if len(sys.argv) > 3 else 40
+MOST_WRITTEN = 2**26  # bytes; damaged files may ask for more than a disk holds, or for hours of writing
 PATIENCE = 10.0  # seconds of CPU time; a run takes half a second under sanitizers
 failures = []
 chance = random.Random(5)
@@ -55,8 +57,9 @@ def outcome(content, arguments=LIKE):
     result = subprocess.run([RAYCONE, *arguments], capture_output=True, timeout=120)
     seconds = cpu_seconds() - before
     message = result.stderr.decode(errors="backslashreplace")
-    # A lattice of its own that is too large is no fault of the file's.
-    too_large = result.returncode == 4 and "needs about" in message
+    # A lattice of its own that is too large, for memory or disk, is no fault of the file's.
+    reasons = {3: "out.npy: cannot write: ", 4: "needs about"}
+    too_large = result.returncode in reasons and reasons[result.returncode] in message
     right_status = result.returncode in (0, 2) or too_large
     if not right_status or message.count("\n") != (result.returncode != 0) or seconds > PATIENCE:
         failures.append("status %d after %.1f s: %s: %s" % (result.returncode, seconds, message[:300].strip(), content.hex()))
@@ -67,6 +70,7 @@ def outcome(content, arguments=LIKE):
 
 with tempfile.TemporaryDirectory() as directory:
     os.chdir(directory)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (MOST_WRITTEN, MOST_WRITTEN))
     subprocess.run([RAYCONE, "lattice", MESH, "-o", "seed.vdb", "--resolution", "4", "--quiet"], check=True)
     with open("seed.vdb", "rb") as file:
         by_head = file.read()

@@ -45,10 +45,16 @@ watch() {
 # Compressed data may ask for 2 GB to decode into, of which little is touched.
 malloc_limit_mb=4096
 
-cmake --preset fuzz >/dev/null
+# quiet COMMAND...: its last lines where it fails.
+quiet() {
+  "$@" >build/fuzz/build.log 2>&1 || { tail -n 30 build/fuzz/build.log >&2; exit 1; }
+}
+
+mkdir -p build/fuzz
+quiet cmake --preset fuzz
 status=0
 for target in "$@"; do
-  cmake --build --preset fuzz --target "fuzz_$target" >/dev/null
+  quiet cmake --build --preset fuzz --target "fuzz_$target"
   mkdir -p "build/fuzz/corpus/$target" "build/fuzz/findings"
   log=build/fuzz/$target.log
   build/fuzz/tests/fuzz/fuzz_"$target" -max_len=20000 -timeout=25 -print_final_stats=1 \
@@ -56,9 +62,13 @@ for target in "$@"; do
     "build/fuzz/corpus/$target" "tests/fuzz/corpus/$target" >"$log" 2>&1 &
   fuzzer=$!
   watch
-  echo "| $target | $(latest stat::number_of_executed_units) | $(($(date +%s) - start)) s | $edges | $(latest ft) |"
+  executions=$(latest stat::number_of_executed_units)
+  echo "| $target | $executions | $(($(date +%s) - start)) s | $edges | $(latest ft) |"
   if grep -q 'SUMMARY: ' "$log"; then
     grep -h 'SUMMARY: \|Test unit written' "$log" >&2
+    status=1
+  elif [ "${executions:-0}" -eq 0 ]; then  # it did not start
+    tail -n 5 "$log" >&2
     status=1
   fi
 done

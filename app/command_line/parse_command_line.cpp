@@ -174,7 +174,8 @@ std::vector<std::string> listed_names(const CommandSpec& spec) {
 // `names`: those that it may be meant to be.
 [[noreturn]] void refuse_unknown(const std::string& option, const std::vector<std::string>& names,
                                  const std::string& command) {
-  const std::string meant = suggestion(option, names);
+  const bool is_output_of_batch = command == "batch" && (option == "-o" || option == "--output");
+  const std::string meant = is_output_of_batch ? "; did you mean --out-dir?" : suggestion(option, names);
   throw UsageError("unknown option " + option + (meant.empty() ? help_hint(command) : meant));
 }
 

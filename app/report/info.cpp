@@ -40,6 +40,14 @@ std::string intersections_of(const IntersectionInfo& found) {
   return "some; --intersections counts them";
 }
 
+std::string turned_by(const OrientationCounts& counts) {
+  const auto number = [](std::uint64_t count, const char* one, const char* many) {
+    return grouped(count) + (count == 1 ? one : many);
+  };
+  return number(counts.flipped_faces, " face", " faces") + ", in " + number(counts.patches, " patch", " patches") +
+         "; " + number(counts.dropped_duplicates, " duplicate", " duplicates") + " left out";
+}
+
 }  // namespace
 
 void InfoTable::row(const std::string& name, const std::string& value) {
@@ -58,6 +66,7 @@ std::string info_text(const MeshInfo& info, const CostedLattices& costed, int th
   if (info.skipped_faces > 0) table.row("skipped faces", grouped(info.skipped_faces) + " of fewer than three corners");
   table.row("vertices", grouped(info.vertices) + ", after welding " + grouped(info.welded_vertices));
   if (!info.unit.empty()) table.row("unit of the file", info.unit);
+  if (info.turned) table.row("turned", turned_by(*info.turned));
   table.row("components", grouped(s.components));
   table.row("surface", s.closed() ? "closed" : "open");
   table.row("exterior edges", grouped(s.exterior_edges));

@@ -11,6 +11,7 @@
 #include "core/data/vec3.h"
 #include "core/data/warning.h"
 #include "core/mesh/mesh_statistics.h"
+#include "core/orientation/orient.h"
 
 namespace raycone {
 
@@ -29,6 +30,7 @@ struct MeshInfo {
   Box bounds;
   MeshStatistics statistics;                   // of the welded mesh
   std::uint64_t opposite_duplicate_faces = 0;  // pairs of faces that cancel
+  std::optional<OrientationCounts> turned;     // what --orient auto did
   std::vector<Warning> warnings;
   std::optional<IntersectionInfo> intersections;  // where asked for
 };

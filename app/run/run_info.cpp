@@ -113,6 +113,7 @@ class InfoRun {
     info.bounds = bounding_box(mesh);
     info.statistics = mesh_statistics(mesh);
     info.opposite_duplicate_faces = input.defects.cancelling_pairs;
+    if (options.orient == Orient::kAuto) info.turned = input.orientation;
     const FoundIntersections intersections = find_intersections(mesh);
     if (mark_) {
       const std::string flaws = listed_flaws(intersections.pairs.value_or(0), info.statistics);

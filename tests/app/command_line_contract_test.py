@@ -44,6 +44,7 @@ SUGGESTIONS = [
     ("slice m.obj -o o.png --valeus o.npy", "unknown option --valeus", "--values"),
     ("info m.obj --jsno", "unknown option --jsno", "--json"),
     ("batch m --outdir o", "unknown option --outdir", "--out-dir"),
+    ("batch m -o o", "unknown option -o", "--out-dir"),
     ("report o --ouptut o.html", "unknown option --ouptut", "--output"),
     ("info m.obj --resolution 5", "unknown option --resolution", None),
     ("lattice m.obj -o o.vdb --entirely-else 5", "unknown option --entirely-else", None),

@@ -8,6 +8,7 @@
 #include "tests/app/meshes.h"
 #include "tests/support/run_command.h"
 #include "tests/support/temporary_directory.h"
+#include "tests/support/text_files.h"
 
 namespace raycone::test {
 namespace {
@@ -31,6 +32,16 @@ TEST_F(InfoCommand, JsonDescribesAClosedMesh) {
     "degenerate_faces": 0, "duplicate_faces": 0, "nonmanifold_edges": 0, "inconsistent_edges": 0,
     "bounds": [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]], "signed_volume": 1.0, "surface_area": 6.0, "skipped_faces": 0,
     "opposite_duplicate_faces": 0, "warnings": [], "warning_lines": []})"));
+}
+
+TEST_F(InfoCommand, TellsWhatIsTurned) {
+  const std::string mesh = dir_ / "twice.obj";
+  write_text(mesh, std::string(kCube) + "f 1 2 3\nf 3 2 1\n");
+  const auto lines = [&](const char* orient) { return run_raycone({"info", mesh, "--orient", orient}).out; };
+  EXPECT_NE(lines("auto").find("  turned               0 faces, in 2 patches; 1 duplicate left out\n"),
+            std::string::npos)
+      << lines("auto");
+  EXPECT_EQ(lines("keep").find("turned"), std::string::npos);
 }
 
 TEST_F(InfoCommand, JsonDescribesAnOpenMeshWithFlaws) {

@@ -558,6 +558,10 @@ MUTANTS = [
         ("core/orientation/nesting_tree.cpp", "mutual[i].push_back(j);", "continue;")]),
     Mutant("nesting_circles_by_order", "where circles of patches begin depends on coordinates only", [
         ("core/orientation/nesting_tree.cpp", "places_.is_before(a, b);", "a < b;")]),
+    Mutant("chains_of_one", "two pieces are turned where one alone does not help", [
+        ("core/orientation/sign_problem.cpp", "kLongest = 32;", "kLongest = 1;")]),
+    Mutant("products_of_one_side", "what a turn does to pieces before it counts as well", [
+        ("core/orientation/sign_problem.cpp", "[p * count + q] = products_[q * count + p];", "[p * count + q] = 0.0;")]),
 
     # --- Surfaces ---
     Mutant("surface_hit_without_edges", "a lattice edge that passes through an edge of a triangle meets it", [
@@ -672,6 +676,8 @@ MUTANTS = [
         ("core/filling/seen_by_nodes.cpp", "!mixed.are_near_to(t, vertices); }) ? Sight::kInPart", "!mixed.are_near_to(t, vertices); }) ? Sight::kWhole")]),
     Mutant("faces_cut_apart_once", "edges of faces cross each other in a plane, too", [
         ("core/arrangement/plane_arrangement.cpp", "if (cross_each_other(s, t, axis, points)) found", "if (n > m) found")]),
+    Mutant("steps_of_each_alone", "what all threads do together is limited", [
+        ("core/arrangement/effort.h", "return effort.take(taken);", "return true;")]),
     Mutant("multiplicity_forgotten", "two faces that lie on each other change winding numbers by two", [
         ("core/arrangement/plane_arrangement.cpp", "*face, std::abs(multiplicity[n])", "*face, 1")]),
     Mutant("corners_of_faces_missed", "a corner of one face on another is a point of both", [

@@ -10,12 +10,11 @@
 namespace raycone {
 
 struct ArrangedPatches {
-  std::vector<std::uint32_t> of_triangle;  // numbered by their first triangles
-  std::vector<std::uint32_t> largest;      // of each patch a triangle
+  std::vector<std::uint32_t> of_triangle;  // per triangle its patch; patches count from 0 by their first triangles
+  std::vector<std::uint32_t> largest;      // per patch its largest triangle, as far as doubles tell
 };
 
-// Sets of triangles that are joined by edges of two. None where the boundary is not empty, so that winding numbers are
-// no integers.
+// Joins triangles across edges of exactly two. None where the mesh is open: its winding numbers are no integers.
 [[nodiscard]] std::optional<ArrangedPatches> patches_of(const Arrangement& arrangement);
 
 }  // namespace raycone

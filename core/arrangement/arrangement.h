@@ -11,20 +11,20 @@
 
 namespace raycone {
 
-// Triangles between vertices of a mesh and points in which its faces meet, which meet each other in nothing but common
-// corners and edges, and make the same winding numbers as the mesh (Zhou, Grinspun, Zorin and Jacobson, "Mesh
-// arrangements for solid geometry", ACM TOG 35(4), 2016). Faces of the mesh that meet beyond what they share are
-// triangulated anew; faces without area, and parts of faces that cancel, are left out. Coordinates are exact: nothing
-// here is rounded.
+// Triangles that make the same winding numbers as a mesh, and meet each other in nothing but common corners and edges
+// (Zhou, Grinspun, Zorin and Jacobson, "Mesh arrangements for solid geometry", ACM TOG 35(4), 2016). Their corners are
+// vertices of the mesh and points in which its faces meet. Faces that meet beyond what they share are triangulated
+// anew; faces without area, and parts of faces that cancel, are left out. Coordinates are exact: nothing here is
+// rounded.
 class Arrangement {
  public:
-  // None where more than `most_pairs` pairs of faces meet beyond what they share, or cutting them takes too long, as it
-  // may where very many meet one. The same for any number of threads, of which pairs are looked for by those that
-  // ThreadLimit allows. Preconditions: `mesh` is welded, and its used vertices are below 2^1020; it stays. Needs
-  // DefaultFloatingPoint.
+  // None where more than `most_pairs` pairs of faces meet beyond what they share, or where cutting them takes too long,
+  // as it may where very many faces meet one. Uses the threads that ThreadLimit allows; the same for any number of
+  // them. Preconditions: `mesh` is welded, its used vertices are below 2^1020 in magnitude, and it outlives the result.
+  // Needs DefaultFloatingPoint.
   [[nodiscard]] static std::optional<Arrangement> of(const TriangleMesh& mesh, std::size_t most_pairs);
 
-  // Corners below the number of the mesh's vertices are these.
+  // Corners by number: first the vertices of the mesh, then the points made.
   [[nodiscard]] const std::vector<Triangle>& triangles() const { return triangles_; }
   // A face of the mesh that the triangle is part of.
   [[nodiscard]] std::uint32_t source(std::size_t triangle) const { return sources_[triangle]; }
@@ -33,7 +33,7 @@ class Arrangement {
 
   [[nodiscard]] std::size_t corners() const { return mesh_->vertices.size() + made_.size(); }
   [[nodiscard]] Vec3 rounded(std::uint32_t corner) const;  // to the nearest doubles
-  // A corner as a point with exact coordinates, and all such points.
+  // A corner as one of points(). Adds it there if need be, so not thread-safe.
   [[nodiscard]] ExactPoints::Number point(std::uint32_t corner);
   [[nodiscard]] ExactPoints& points() { return points_; }
 

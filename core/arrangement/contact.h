@@ -8,10 +8,10 @@
 
 namespace raycone {
 
-// The common points of two triangles that are not of one plane are one, or a segment between two. These are corners of
-// the triangles, or where edges pass through them; one may be named several times.
+// What two triangles have in common: nothing, a point, or a segment, given by its ends. Each end is a corner of a
+// triangle, or a point where an edge passes through the other triangle; one may be named several times.
 struct Contact {
-  bool is_of_one_plane = false;  // then nothing is named
+  bool is_of_one_plane = false;  // the triangles are of one plane; then no ends are given
   std::vector<Vec3> corners;
   std::vector<ExactPoints::OnPlane> passes;
 };

@@ -9,12 +9,12 @@
 
 namespace raycone {
 
-// A number of steps, each of a fraction of a microsecond or some.
+// A budget of steps. A step takes from a fraction of a microsecond to a few microseconds.
 class Effort {
  public:
   explicit Effort(std::uint64_t steps) : left_(steps) {}
 
-  // Takes some. False where fewer are left; then none is.
+  // Takes `steps`. False where fewer are left: then all are used up.
   [[nodiscard]] bool take(std::uint64_t steps = 1) {
     const bool are_left = steps <= left_;
     left_ -= are_left ? steps : left_;
@@ -26,8 +26,9 @@ class Effort {
   std::uint64_t left_;
 };
 
-// Calls work(n, effort) for each n below `count`, on the threads that ThreadLimit allows. False where one of them is,
-// or where together they take more steps than there are: the same for any number of threads.
+// Calls work(n, effort), which returns whether it is done, for each n below `count`, on the threads that ThreadLimit
+// allows. False where a call returns false, or where all calls together take more steps than are left; the same for any
+// number of threads.
 template <class Work>
 [[nodiscard]] bool parallel_for_each(std::size_t count, Effort& effort, const Work& work) {
   const std::uint64_t most = effort.left();

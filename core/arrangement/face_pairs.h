@@ -9,14 +9,14 @@
 
 namespace raycone {
 
-// Two faces at an edge between which the solid is.
+// Two faces at an edge with the solid between them. One has the edge forward, the other backward.
 struct FacePair {
   FaceEdge forward, backward;
 };
 
-// The pairs at all edges of the border of a solid, which is behind its faces; in the order of the edges. Nothing where
-// the border has no two sides: faces of either direction do not alternate around an edge, or of more than two one lies
-// on another. Needs DefaultFloatingPoint.
+// The pairs at all edges of the border of a solid, in the order of the edges. The solid is behind the faces. Nothing
+// where the faces do not say on which side it is: at an edge they do not alternate in direction, or one of more than
+// two lies on another. Needs DefaultFloatingPoint.
 [[nodiscard]] std::optional<std::vector<FacePair>> face_pairs(const TriangleMesh& border);
 
 }  // namespace raycone

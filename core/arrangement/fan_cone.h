@@ -12,33 +12,36 @@
 
 namespace raycone {
 
-// The faces of a fan, as seen from its vertex: a cone that the solid is behind. In doubles: whatever is made of it must
-// be looked at.
+// The faces of a fan, as seen from its vertex: a cone with the solid behind it. In doubles, not exact: what is built by
+// it must be checked.
 class FanCone {
  public:
   FanCone(const TriangleMesh& mesh, std::uint32_t vertex, const std::vector<std::uint32_t>& faces);
 
   [[nodiscard]] const std::vector<std::uint32_t>& faces() const { return faces_; }
 
-  // Away from the vertex, within a face; not in its middle, for what is symmetric would be level with edges of others.
+  // A direction from the vertex within a face. Not the middle of the face: there, symmetric meshes would have edges of
+  // other fans level with it.
   [[nodiscard]] Vec3 way_along() const;
 
-  // A direction of length 1 for the vertex to move in, with all faces on one side, so that it goes away from `others`,
-  // which are directions: behind all faces if these are all in front, and the other way round.
+  // A direction of length 1 in which the vertex can leave `others` (directions): behind all faces where all of `others`
+  // are in front of the cone, in front of all faces where all are behind it. None where neither is so, where no
+  // direction is clearly on one side of all faces, or where there are more than 64.
   [[nodiscard]] std::optional<Vec3> way_from(const std::vector<Vec3>& others) const;
 
-  // Whether this fan, moved a bit in a direction, goes away from another one of the same vertex.
+  // Whether this fan can move a little along `way` without passing through `other`, a fan of the same vertex.
   [[nodiscard]] bool leaves(const FanCone& other, const Vec3& way) const;
 
-  // Whether each face, moved in a direction, goes against the perturbation, or stays in its plane: points on it are
-  // then on the side of it that they are on as perturbed.
+  // Whether moving along `way` takes each face against the perturbation, or leaves it in its plane. Points on a face
+  // are then on the side of it where the perturbation has them.
   [[nodiscard]] bool goes_against_perturbation(const Vec3& way) const;
 
-  // How far a fan's faces at edges that another one has, too, are ahead in a direction: the same at all vertices along
-  // an edge where these are the faces.
+  // How far this fan is ahead of `other` along `way`: of its faces at edges that both have, the cosines between `way`
+  // and the direction from the edge into the face, added up. The same at all vertices along an edge with the same
+  // faces.
   [[nodiscard]] double lead(const FanCone& other, const Vec3& way) const;
 
-  // On which side lid_of() finds a lid to cut the vertex off: within the solid, -1, or outside, 1. None for neither.
+  // On which side lid_of() finds a lid to cut the vertex off: -1 within the solid, 1 outside. None for neither.
   [[nodiscard]] std::optional<double> side_of_lid() const;
 
  private:
@@ -53,9 +56,10 @@ class FanCone {
   std::vector<Sector> sectors_;
 };
 
-// Triangles, given as numbers of directions, that are to a polygon of directions what ears cut off make of a polygon in
-// a plane: seen from where the directions start they cover it once, the polygon's inside being on its right (side -1)
-// or on its left (1). None where no ears are found, and of more than 256 directions.
+// Cuts a polygon of directions into triangles by cutting off ears, as of a polygon in a plane. Returns the triangles by
+// the numbers of their directions. Seen from where the directions start, they cover the polygon once; its inside is on
+// its right (side -1) or on its left (side 1). None where no ear is found, and for fewer than 3 or more than 256
+// directions.
 [[nodiscard]] std::optional<std::vector<std::array<std::size_t, 3>>> lid_of(const std::vector<Vec3>& polygon,
                                                                             double side);
 

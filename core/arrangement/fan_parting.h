@@ -14,7 +14,7 @@
 
 namespace raycone {
 
-// Fans are numbered as they are given. What is not named here keeps the vertex.
+// What each fan of a vertex does. Fans are numbered as they are given; those not named here keep the vertex.
 struct FanParting {
   struct Move {
     std::size_t fan;
@@ -29,13 +29,14 @@ struct FanParting {
   std::vector<std::size_t> order;  // against the perturbation: the fans, the one that stays first
 };
 
-// Each fan goes into its inside, or out of it where that is the way to go: the last one, or one that cannot move, keeps
-// the vertex. Of several that cannot, all but that with most faces are cut off. Nothing where two of these cannot be
-// cut off either. Thread-safe.
+// Each fan goes into its inside, or out of it where that leads away from the others, by `distance` in world units. The
+// last one keeps the vertex, or else a fan that cannot move. Where several cannot, one of them keeps the vertex and the
+// others are cut off: the one that cannot be cut off keeps it, else the one with most faces. Nothing where two can
+// neither be moved nor be cut off. Thread-safe.
 [[nodiscard]] std::optional<FanParting> parting_inside(const std::vector<FanCone>& fans, double distance);
 
-// How many steps the faces of a mesh have gone against the perturbation at vertices that were taken apart before.
-// `mesh`: stays as it is meanwhile.
+// How many steps the faces of a mesh have gone against the perturbation, at vertices that were taken apart before.
+// `mesh` must stay as it is while this lives.
 class FanSteps {
  public:
   explicit FanSteps(const TriangleMesh& mesh) : mesh_(mesh) {}
@@ -43,7 +44,8 @@ class FanSteps {
   // `order`: of the parting that was chosen at the vertex.
   void note(std::uint32_t vertex, const std::vector<FanCone>& fans, const std::vector<std::size_t>& order);
 
-  // At how many corners that faces of both have one has gone farther, less those at which the other one has.
+  // Over the corners that a face of each fan has: at how many the face of `one` has gone farther, less those at which
+  // that of `other` has.
   [[nodiscard]] int corners_ahead(const FanCone& one, const FanCone& other) const;
 
  private:
@@ -51,10 +53,10 @@ class FanSteps {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> steps_;  // of faces at corners
 };
 
-// Against the perturbation: of the order that is found the first fan stays, and each other one goes a distance farther
-// than those before it, away from them. Of two that may leave each other, the one that is ahead at the other ends of
-// their edges is ahead, or the one whose faces are. Nothing where one may not leave another that is before it.
-// Thread-safe.
+// The fans go against the perturbation, in an order that is chosen here: the first one stays, the n-th one after it
+// goes n times `distance`, in world units. Where either of two fans may leave the other, the one that is ahead at the
+// other ends of their edges goes farther; where neither is, the one whose faces lead (FanCone::lead()). Nothing where a
+// fan may not leave one that comes before it. Thread-safe.
 [[nodiscard]] std::optional<FanParting> parting_against_perturbation(const std::vector<FanCone>& fans, double distance,
                                                                      const FanSteps& steps);
 

@@ -15,9 +15,9 @@
 
 namespace raycone {
 
-// Of points of a mesh, and a triangle far around them (ExactPoints::add_triangle_around()). Every triangle turns left.
-// All of that is exact; that triangles are nearly Delaunay's (Lawson 1977), before segments are forced into them, is
-// not: it only keeps walks short. Needs DefaultFloatingPoint.
+// Of points of a mesh, and a triangle far around them (ExactPoints::add_triangle_around()). Every face turns left,
+// exactly. Faces are nearly Delaunay's (Lawson 1977) before segments are forced in; that is not exact, and only keeps
+// walks short. Needs DefaultFloatingPoint.
 class PlaneTriangulation {
  public:
   using Number = ExactPoints::Number;
@@ -28,21 +28,21 @@ class PlaneTriangulation {
     std::array<std::uint32_t, 3> beyond;   // the face across from each corner; kNone outside
   };
 
-  // `points` and `effort` must stay. Seen along `axis`. `around`: the triangle far around them.
+  // `points` and `effort` must outlive this. Seen along `axis`.
   PlaneTriangulation(const ExactPoints& points, int axis, const std::array<Number, 3>& around, Effort& effort);
 
-  // False if that takes too long. Precondition: the point is within the triangle around all.
+  // False if that takes too long. Precondition: the point is within the triangle `around`.
   [[nodiscard]] bool insert(Number point);
-  // Makes the segment between two points that have been inserted a chain of edges: the points along it, with both ends.
+  // Makes the segment between two inserted points a chain of edges. Returns the points along it, both ends included.
   // Segments that were forced in before stay, if it crosses none of them. None if that takes too long.
   [[nodiscard]] std::optional<std::vector<Number>> connect(Number from, Number to);
-  // Flips edges that are of no segment until nearly none has a corner beyond that is within the circle around a face:
-  // so no face is flatter than its corners make it.
+  // Makes faces nearly Delaunay's again, by flipping edges that are of no segment: so none is flatter than its corners
+  // make it. Ends early where the effort is spent.
   void make_delaunay();
 
   [[nodiscard]] const std::vector<Face>& faces() const { return faces_; }
   [[nodiscard]] Number point(std::uint32_t corner) const { return points_of_[corner]; }
-  // A face that has a corner of the triangle around all.
+  // A face with a corner of the triangle `around`.
   [[nodiscard]] std::uint32_t outer_face() const { return face_of_[0]; }
 
  private:

@@ -23,13 +23,14 @@ struct RuleBorderOptions {
   std::size_t most_pairs = 0;                                    // of faces that meet beyond what they share
 };
 
-// The parts of faces at which the rule holds on one side alone, facing the other one. All is exact, but that vertices
-// are rounded in the end: points in which faces meet to the nearest doubles, and all to floats if those are asked for.
-// Equal ones are one vertex then, and triangles of two equal corners are gone. So the border may pass through itself
-// where points are about as close together as numbers are. None where the mesh is open, has more pairs than allowed, or
-// takes too long, and where rays that are to tell its sides keep meeting edges. The same for any number of threads;
-// uses those that ThreadLimit allows. Preconditions: `mesh` is welded, and its used vertices are below 2^1020. Needs
-// DefaultFloatingPoint.
+// The border of the set where the rule holds: the parts of faces with the rule holding on one side alone, turned to
+// face the other side. All is exact but the last step, which rounds vertices: points in which faces meet to the nearest
+// doubles, then all to floats where `options.precision` says so. Vertices that are equal then become one, and triangles
+// with two equal corners go. So the border may pass through itself where points are about as close together as numbers
+// are.
+// None where the mesh is open, has more than `most_pairs` such pairs, or takes too long, and where the rays that are to
+// tell its sides keep meeting edges. Uses the threads that ThreadLimit allows; the same for any number of them.
+// Preconditions: `mesh` is welded, and its used vertices are below 2^1020 in magnitude. Needs DefaultFloatingPoint.
 [[nodiscard]] std::optional<RuleBorder> rule_border(const TriangleMesh& mesh, const RuleBorderOptions& options);
 
 }  // namespace raycone

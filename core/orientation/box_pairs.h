@@ -11,7 +11,8 @@
 
 namespace raycone {
 
-// The axis along which the fewest of some boxes lie beside each other: of all boxes in a plane, one within it.
+// The axis (0 to 2) along which boxes overlap least: the sum of their extents, each as a part of the extent of all, is
+// smallest. Where all boxes lie in one plane, an axis within it.
 [[nodiscard]] int axis_to_sweep(const std::vector<Box>& boxes);
 
 // Calls visit(i, j) once for each two boxes that overlap(), in an order that depends on the boxes alone. Sweeps along

@@ -11,20 +11,20 @@ namespace raycone {
 // A tree over dipoles (Barill et al. 2018). Depends on their order only through ties.
 class DipoleTree {
  public:
-  // Surfaces with a radius above `reach` count as if they were so small: what is near then stays little, and sums are
-  // less exact. With a reach of 0 all surfaces are far.
+  // A surface with a radius above `reach` counts as if that were its radius: so few surfaces are near anywhere, and
+  // sums are less exact. With a reach of 0 all surfaces are far everywhere.
   DipoleTree(std::vector<SurfaceDipole> dipoles, double reach);
 
   // Each surface with its sign from here on: 1, -1, or 0 to leave it out.
   void set_signs(const std::vector<int>& signs);
 
-  // The sum of sign times winding number over the surfaces that are far from q.
+  // The sum of sign times winding number, in turns, over the surfaces that are far from q (SurfaceField::kFar).
   [[nodiscard]] double far_sum(const Vec3& q) const;
 
   // What one surface of sign 1 adds to far_sum().
   [[nodiscard]] double far_part(std::uint32_t surface, const Vec3& q) const;
 
-  // Calls visit(surface) for each of the others.
+  // Calls visit(surface) for each surface that is not far from q.
   template <class Visit>
   void for_each_near(const Vec3& q, const Visit& visit) const {
     visit_near(0, q, visit);

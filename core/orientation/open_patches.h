@@ -24,11 +24,11 @@ class OpenSurfaceTurner {
   OpenSurfaceTurner(const OpenSurfaceTurner&) = delete;
   OpenSurfaceTurner& operator=(const OpenSurfaceTurner&) = delete;
 
-  // For each open surface 1 where it stays as it is, -1 where it is reversed. With `closed`, faces that stay as they
-  // are, the winding number should come closest to 1/2 on the surfaces: as the mean of both sides of a face, squared
-  // distance from 1/2, weighted by area. docs/method.md, "Orientation", says which samples stand for the surfaces and
-  // how the least sum is sought. Depends on coordinates only. Precondition: `closed` are the same faces at each call,
-  // in any orientation.
+  // For each open surface 1 where it stays as it is, -1 where it is reversed. `closed`: faces that stay as they are.
+  // With these, the winding number on the open surfaces, as the mean of both sides of a face, should come closest to
+  // 1/2: the sum of its squared distances from 1/2, weighted by area, is made small. docs/method.md, "Orientation",
+  // says which samples stand for the surfaces and how the least sum is sought. Depends on coordinates only.
+  // Precondition: `closed` are the same faces at each call, in any orientation.
   [[nodiscard]] std::vector<int> turn(const std::vector<Triangle>& closed);
 
  private:

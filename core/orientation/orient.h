@@ -22,8 +22,8 @@ struct OrientationCounts {
   std::uint64_t dropped_duplicates = 0;  // of the same three positions as a face that is left
   std::uint64_t patches = 0;             // sets of faces that were turned together
   std::uint64_t cut_edges = 0;           // where two faces cannot agree, as on a Moebius strip
-  // Where faces end of which copies were stored as often either way, and all others close each other, as where a wall
-  // between two cells meets their other faces. The winding number is no integer around them.
+  // Edges at which faces end whose copies were stored as often either way, while all other faces close each other: as
+  // where a wall between two cells meets their other faces. The winding number is no integer around them.
   std::uint64_t wall_edges = 0;
 
   OrientationCounts& operator+=(const OrientationCounts& other) {

@@ -11,10 +11,10 @@ namespace raycone {
 
 struct Patches {
   std::vector<std::uint32_t> of_face;  // patches are counted from 0 by their first faces
-  std::vector<std::int8_t> sign;       // per face: 1 where it agrees with its patch as given, -1 where reversed
-  std::vector<std::uint32_t> faces;    // by patch
-  std::vector<std::size_t> begin;      // per patch, and the end: where its faces are
-  std::uint64_t cut_edges = 0;         // of two faces that do not agree
+  std::vector<std::int8_t> sign;  // per face: 1 where it agrees with its patch as given, -1 where it has to be reversed
+  std::vector<std::uint32_t> faces;  // those of one patch after the other
+  std::vector<std::size_t> begin;    // where the faces of each patch begin in `faces`; one more at the end
+  std::uint64_t cut_edges = 0;       // edges of two faces that do not agree as turned
 
   [[nodiscard]] std::size_t size() const { return begin.size() - 1; }
   [[nodiscard]] std::span<const std::uint32_t> operator[](std::size_t patch) const {
@@ -23,8 +23,8 @@ struct Patches {
 };
 
 // Faces joined across the edges that exactly two of them share, and turned to agree there. Where that is impossible,
-// edges are cut: few, not the fewest, and which ones depends on coordinates only. Takes time in proportion to the
-// faces, those on patches that are cut to n log n.
+// edges are cut: few, though not always the fewest; which ones depends on coordinates only. Takes time in proportion to
+// the faces, and n log n for n faces of patches that are cut.
 [[nodiscard]] Patches find_patches(const std::vector<Triangle>& faces, const FaceNeighbours& neighbours,
                                    const std::vector<Vec3>& vertices);
 

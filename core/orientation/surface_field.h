@@ -23,14 +23,14 @@ struct SurfaceDipole {
   [[nodiscard]] double at(const Vec3& q) const {
     const Vec3 r = centre - q;
     const double square = dot(r, r);
-    constexpr double kCentre = 0x1p-600;  // square of the distance, of which the third power is none any more
+    constexpr double kCentre = 0x1p-600;  // square of a distance: any nearer, q counts as the centre
     if (!(square > kCentre)) return 0.0;
     return dot(area, r) / (4.0 * std::numbers::pi * square * std::sqrt(square));
   }
 };
 
-// About the middle of the surface's box; `sign`: -1 of the faces the other way round, else 1. Coordinates in [0, 1].
-// Does not depend on the order of faces, whose areas are added up as integers.
+// The dipole about the middle of the surface's box; with `sign` -1, of the faces reversed. Coordinates in [0, 1]. Does
+// not depend on the order of faces, whose areas are added up as integers.
 [[nodiscard]] SurfaceDipole dipole_of(const std::vector<Triangle>& faces, const std::vector<Vec3>& vertices, int sign);
 
 // A point, and where it lies on the surface itself: 0 not there, else as SurfaceSample::side.

@@ -18,8 +18,8 @@ struct SurfaceSample {
   int side = 0;         // where the perturbed point is (core/exact/predicates.h): 1 before the face, -1 behind it
 };
 
-// Vertices moved to where sums are taken, each with a number that its coordinates there give, as if random. Moved,
-// small parts of a mesh may become one point; where they were tells them apart then.
+// Vertices moved to where sums are taken. Each has a number, as if random, that depends on its moved coordinates alone.
+// Once moved, small parts of a mesh may become one point: `exact` tells them apart then.
 struct NumberedVertices {
   // `exact`: the vertices as they were; must outlive this.
   NumberedVertices(std::vector<Vec3> moved, const std::vector<Vec3>& exact);
@@ -36,8 +36,9 @@ struct NumberedVertices {
 [[nodiscard]] std::vector<SurfaceSample> sample_surface(const std::vector<Triangle>& faces,
                                                         const NumberedVertices& vertices, std::size_t count);
 
-// Samples in place of these, whose order stays. Where a face is at least four times as large as `area`, they are the
-// middles of 4, 9, 16, ... equal parts of it, up to 1024, each no smaller than that.
+// The samples in their order, but where a face has at least four times `area` (positive, square units): there the
+// middles of 4, 9, 16, ... equal parts of the face, up to 1024, stand for it, none of less than `area` unless there
+// would be more.
 [[nodiscard]] std::vector<SurfaceSample> divided(const std::vector<SurfaceSample>& samples, double area);
 
 }  // namespace raycone

@@ -10,14 +10,14 @@
 
 namespace raycone {
 
-// The parts of faces at which the rule holds on one side alone: rule_border(), taken apart where parts of the set touch
-// (take_apart()), by some 2^-30 voxel or some roundings, and rounded. So that nodes on faces there stay on their sides,
-// parts move against the perturbation, where moves into their insides would not leave them there. It is closed,
-// 2-manifold and free of self-intersections, and faces outward. Where rounding makes it pass through itself it is
-// snapped (snap()), and the border of that is taken, a few times. Where that does not help, vertices at faults of the
-// first border alone are moved other ways. None if there is nothing like that: of open meshes, and where faces touch in
-// ways that no vertices can follow. The same for any number of threads. Preconditions: `mesh` is welded, its used
-// vertices are finite. Needs DefaultFloatingPoint.
+// The rule_border() of a mesh, made closed, 2-manifold and free of self-intersections; it faces outward. Where parts of
+// the set touch, they are taken apart (take_apart()) by some 2^-30 voxels or some roundings. Moves into their insides
+// may leave nodes that lie on faces there on the wrong side: then parts move against the perturbation. Where rounding
+// makes the border pass through itself, it is snapped (snap()) and its own border is taken, a few times. Where that
+// does not help, vertices of the first border are moved other ways, at its faults alone.
+// None where no such border is found: of open meshes, and where faces touch in ways that no vertices can follow. The
+// same for any number of threads. Preconditions: `mesh` is welded, its used vertices are finite. Needs
+// DefaultFloatingPoint.
 [[nodiscard]] std::optional<SurfaceMesh> embedded_border(const TriangleMesh& mesh, const NodeSet& inside,
                                                          const SurfaceOptions& options);
 

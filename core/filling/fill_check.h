@@ -7,25 +7,25 @@
 
 namespace raycone {
 
-// Whether the threshold is passed within a quarter of a voxel of nine tenths of the faces without a source, by their
-// area, and within a voxel of 99 in 100, or of all but the area of a voxel's face, as their middles tell; faces thinner
-// than 2^-6 voxels aside. `along`: of the mesh that the surface is of. Needs DefaultFloatingPoint. So does the next
-// one. The same for any number of threads.
+// Whether the faces without a source lie along a threshold of the rule, as their middles tell. It must pass within a
+// quarter of a voxel of nine tenths of their area, and within a voxel of 99 in 100; as much as a voxel's face may be
+// off in any case. Faces thinner than 2^-6 voxels do not count. `along`: of the mesh that the surface is of; `voxel`:
+// its shortest side, world units. The same for any number of threads. Needs DefaultFloatingPoint.
 [[nodiscard]] bool is_along_threshold(const SurfaceMesh& surface, const RuleAlong& along, double voxel);
 
-// What separates of the triangles of a mesh, with the rule holding on one side alone, and is farther than a quarter of
-// a voxel from a surface; square units.
+// Area of a mesh that a surface has lost: the rule holds on one side alone there, and the surface is farther than a
+// quarter of a voxel away. Square world units.
 struct LostArea {
-  double thin = 0.0;   // what is behind ends within half a voxel, as next to a sheet that hangs on the mesh
+  double thin = 0.0;   // the set behind it ends within half a voxel, as next to a sheet that hangs on the mesh
   double thick = 0.0;  // the rest
 };
 
-// Judged at points half a voxel apart.
+// Judged at points half a voxel apart. The same for any number of threads. Needs DefaultFloatingPoint.
 [[nodiscard]] LostArea lost_area(const SurfaceMesh& surface, const TriangleMesh& mesh, const RuleAlong& along,
                                  double voxel);
 
-// Whether that is little: what is thick no more than a twentieth of the area without a source, or a quarter of a
-// voxel's face.
+// Whether little is lost: no more thick area than a twentieth of the area without a source, or a quarter of a voxel's
+// face.
 [[nodiscard]] bool keeps_what_separates(const SurfaceMesh& surface, const LostArea& lost, double voxel);
 
 }  // namespace raycone

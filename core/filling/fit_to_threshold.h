@@ -11,19 +11,20 @@
 namespace raycone {
 
 struct FitOptions {
-  std::size_t most_faces = 0;                                    // without source
+  std::size_t most_faces = 0;                                    // of faces without source, as a limit
   CoordinatePrecision precision = CoordinatePrecision::kDouble;  // of new vertices
 };
 
-// Divides the faces of a closed surface that have no source, until they are along where the winding number passes a
-// threshold of the rule, and the surface separates the `inside` nodes from the others. New vertices are there, to
-// 2^-34 of a voxel or so, or what their precision rounds; where that is on faces with a source, 2^-10 voxels behind
-// these. Faces longer than a voxel are divided where their middle, or that of their longest side, is farther than 2^-6
-// voxels from there. Nodes that no such face is near to get an octahedron around them. Edges of faces with a source
-// stay as they are. Returns whether all nodes are on their sides then. The faces may pass through each other, and
-// through others: the surface is the border of where its winding number is 1 or more. The same for any number of
-// threads. Preconditions: as of closed_surface(), and `along` is of the rule and the mesh that the surface is of. Needs
-// DefaultFloatingPoint.
+// Divides the faces without source of a closed surface, until they lie along a threshold of the rule and the surface
+// separates the `inside` nodes from the others. New vertices lie on the threshold, to 2^-34 of a voxel or so, or to
+// what their precision rounds; where it is on faces with a source, 2^-10 voxels behind these. A face is divided where
+// its middle, or that of its longest side, is farther from the threshold than 2^-6 voxels or, of faces no longer than a
+// voxel, 2^-3. A node on the wrong side that no such face is near to gets an octahedron around it. Edges of faces with
+// a source stay as they are.
+// Returns whether all nodes are on their sides then; false also where that would take too many faces. The faces may
+// pass through each other, and through others: the border of where the winding number of `surface` is 1 or more is what
+// is wanted. The same for any number of threads. Preconditions: as of closed_surface(), and `along` is of the rule and
+// of the mesh that the surface is of. Needs DefaultFloatingPoint.
 [[nodiscard]] bool fit_to_threshold(SurfaceMesh& surface, const RuleAlong& along, const NodeSet& inside,
                                     const FitOptions& options);
 

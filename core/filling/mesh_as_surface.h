@@ -7,17 +7,16 @@
 
 namespace raycone {
 
-// The mesh itself, where it is closed, 2-manifold and free of self-intersections: those of its components at which the
-// rule ceases to hold. If it has faults, or the rule holds in front of a component alone, its embedded_border(). Open
-// ones may be closed but for cracks of some roundings. Others are closed by caps first; fit_to_threshold() divides
-// these, and the border of that is cut out. That must have the `inside` nodes, and no others, behind its fronts.
-// Components that the lattice does not see are left out (sights_of()); if it sees others in part, or there are more
-// than twelve triangles, once merged, to a cell with nodes of both kinds, there is no surface: walls and parts that are
-// too thin for the lattice are dropped as ever, and of fine meshes a coarse lattice makes coarse surfaces. Faces of one
-// plane are merged, then `options.simplify` holds, as closed_surface() does it. None otherwise, and where that function
-// would do something else: where the set has a thickness, or no faces are to be merged, and where what fills holes is
-// not along the threshold, or cuts off what separates. Lattices are not refused that are too fine for that one. The
-// same for any number of threads. Preconditions: as of closed_surface().
+// The border of what is inside a mesh, made of the mesh's own faces; none where a contour does better.
+// Of a mesh without exterior edges, or with none but at cracks of some roundings, it is mesh_border(). Of others it is
+// filled_border(): caps close the holes, fit_to_threshold() divides the caps, and the border is cut out. It has the
+// `inside` nodes, and no others, behind its fronts. Components that the lattice does not see (sights_of()) are left
+// out. Faces of one plane are merged; then `options.simplify` holds, as closed_surface() does it.
+// None where the lattice sees a component only in part, or where there are more than twelve triangles, once merged, to
+// a mixed cell: so walls and parts that are too thin for the lattice are dropped as ever, and coarse lattices make
+// coarse surfaces of fine meshes. None where what fills holes is not along the threshold, or cuts off what separates;
+// where the set has a thickness; and where no faces are to be merged. Unlike closed_surface(), this does not refuse
+// lattices that are too fine. The same for any number of threads. Preconditions: as of closed_surface().
 [[nodiscard]] std::optional<FinishedSurface> mesh_as_surface(const SurfaceInput& input);
 
 }  // namespace raycone

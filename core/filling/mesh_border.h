@@ -14,13 +14,14 @@ namespace raycone {
 
 struct MeshBorder {
   SurfaceMesh surface;  // closed, 2-manifold and free of self-intersections
-  Rule rule;            // what is inside by its winding numbers
+  Rule rule;            // tells what is inside by the winding numbers of `surface`
 };
 
-// Of a closed mesh: the components at which the rule ceases to hold or, where it has faults, or the rule holds in front
-// of a component alone, its embedded_border(). None where there is none, or the mesh has more than `most` triangles and
-// has to be cut. Also of a mesh whose boundary is empty but for how it is cut into edges. The same for any number of
-// threads. Preconditions: as of closed_surface(). Needs DefaultFloatingPoint.
+// The border of what is inside a closed mesh. Where the mesh has no faults, it is the components at which the rule
+// ceases to hold. Where it has faults, or the rule holds in front of a component alone, it is embedded_border(). The
+// mesh may have exterior edges if its boundary is empty but for how it is cut into edges. None where there is no such
+// border, where floats cannot hold the vertices, and where the mesh has more than `most` triangles and would have to be
+// cut. The same for any number of threads. Preconditions: as of closed_surface(). Needs DefaultFloatingPoint.
 [[nodiscard]] std::optional<MeshBorder> mesh_border(const TriangleMesh& mesh, const NodeSet& inside,
                                                     const SurfaceOptions& options, std::size_t most);
 

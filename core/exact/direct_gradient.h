@@ -12,8 +12,8 @@ struct DirectGradient {
   Quad magnitude = 0;       // the sum of the lengths of what was added: rounding is to be judged by it
 };
 
-// At any finite q. Sides that two triangles run through in opposite directions cancel exactly; a side whose line q is
-// on adds nothing. Some 9 us per triangle. Thread-safe.
+// At any finite q. Sides that two triangles run through in opposite directions cancel exactly; a side adds nothing
+// where q is on its line. Some 9 us per triangle. Thread-safe.
 [[nodiscard]] DirectGradient direct_gradient(const TriangleMesh& mesh, const Vec3& q);
 
 }  // namespace raycone

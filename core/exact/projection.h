@@ -11,9 +11,9 @@
 
 namespace raycone {
 
-// The direction of a polygon's area vector, the sum of c(i) x c(i+1): each component of the exact vector, times one
-// power of two, rounded, all but exactly (an error is below 2^-30 of the sum of their magnitudes); the largest is
-// between 1/2 and 2. Zero if and only if the area vector is.
+// The direction of a polygon's area vector, the sum of c(i) x c(i+1), times a power of two: the largest component is
+// between 1/2 and 2 in magnitude. Each component is the exact one, rounded with an error below 2^-30 of the sum of the
+// components' magnitudes, nearly always far less. Zero if and only if the area vector is.
 [[nodiscard]] Vec3 area_direction(std::span<const Vec3> corners);
 
 // Sign of det(b - a, v, direction).
@@ -22,8 +22,9 @@ namespace raycone {
 // Sign of det(b - a, c - a, direction).
 [[nodiscard]] int exact_turn(const Vec3& direction, const Vec3& a, const Vec3& b, const Vec3& c);
 
-// What differences, two products and sums of doubles round, relative to the sum of the products' absolute values: less
-// than eight roundings of 2^-53. What underflows is below 2^-1060 times the direction, whose size is about 1.
+// A bound of what rounding does to the determinant in turn() and SweepOrder, as a part of its products' magnitudes
+// added up: less than eight roundings of 2^-53. What underflows is below 2^-1060 times the direction, whose size is
+// about 1.
 inline constexpr double kTurnTrust = 0x1p-49;
 inline constexpr double kTurnUnderflow = 0x1p-960;
 
@@ -37,9 +38,9 @@ inline constexpr double kTurnUnderflow = 0x1p-960;
   return exact_turn(direction, a, b, c);
 }
 
-// A lexicographic order of the projections, by coordinates along two axes of which the second is a quarter turn left of
-// the first. They are askew to the axes of space, since corners that are level with each other would take exact numbers
-// to compare.
+// A lexicographic order of the projections: by the coordinate along one axis of the plane, then along another one, a
+// quarter turn left of it. The two are askew to the axes of space: corners that are level with each other would take
+// exact numbers to compare.
 class SweepOrder {
  public:
   explicit SweepOrder(const Vec3& direction);

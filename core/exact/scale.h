@@ -15,8 +15,8 @@ class PowerOfTwo {
   [[nodiscard]] int exponent() const { return exponent_; }
   // Two factors whose product is 2^exponent, which itself need not be a double.
   [[nodiscard]] std::array<double, 2> factors() const { return {half_, other_half_}; }
-  // Whether the product loses nothing that a predicate could see: scaled down, it may not become subnormal, even where
-  // it would keep its bits; so that on an axis of a lattice few intervals answer alike. Not about overflow.
+  // Whether scaling `value` loses nothing that a predicate could see. False for all that becomes subnormal, even if it
+  // would keep its bits: so along an axis of a lattice the answer changes only a few times. Overflow is not looked at.
   [[nodiscard]] bool keeps(double value) const { return std::abs(value) >= least_ || value == 0.0; }
   [[nodiscard]] double operator()(double value) const { return value * half_ * other_half_; }
   [[nodiscard]] Vec3 operator()(const Vec3& p) const { return {(*this)(p.x), (*this)(p.y), (*this)(p.z)}; }

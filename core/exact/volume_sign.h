@@ -13,8 +13,9 @@ namespace raycone {
 // integers, which takes some microseconds a triangle. Needs DefaultFloatingPoint. Thread-safe.
 [[nodiscard]] int volume_sign(const std::vector<Triangle>& triangles, const std::vector<Vec3>& vertices);
 
-// The same of a sum in doubles of a product of three for each triangle, where that is sure, else 0. `terms`: the sum of
-// the magnitudes of all products; in each of them kVolumeUnderflow was added to a product of two.
+// The same from a sum in doubles: of six times a signed volume for each triangle. 0 where rounding may have changed the
+// sign. `terms`: the sum of the magnitudes of all products, where kVolumeUnderflow was added to each product of two
+// factors before the third.
 [[nodiscard]] int sure_volume_sign(double sum, double terms, std::uint64_t triangles);
 inline constexpr double kVolumeUnderflow = 0x1p-1000;  // far more than a product loses that is below all doubles
 

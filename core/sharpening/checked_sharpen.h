@@ -7,11 +7,11 @@
 
 namespace raycone {
 
-// What Sharpener makes of a surface without faults, without what makes faults: around these nothing is pulled; where
-// that does not help, nothing at all. A face that crosses an edge of the lattice off the mesh is a fault, too. Only
-// what is near a change is looked at (faults_near(), changed_nodes()). `rounds`: how often is looked for faults at
-// most. Returns whether anything has been pulled; else the surface is as it was. The same for any number of threads.
-// Needs DefaultFloatingPoint.
+// Sharpens a surface that has no faults (Sharpener), and takes back what makes faults: vertices around them are not
+// pulled; where that does not help, none are. A face that crosses a mixed edge of the lattice off the mesh is a fault,
+// too. Only what is near a change is looked at (faults_near(), changed_nodes()). `rounds`: how often faults are looked
+// for at most. Returns whether anything has been pulled; else the surface is as it was. Uses the threads that
+// ThreadLimit allows; the same for any number of them. Needs DefaultFloatingPoint.
 [[nodiscard]] bool checked_sharpen(SurfaceMesh& surface, const SharpenInput& input, const NodeSet& inside,
                                    const SharpenLimits& limits, int rounds = 11);
 

@@ -7,10 +7,10 @@
 
 namespace raycone {
 
-// Fills gaps that fill_gap() alone cannot: where faces of a plane reach beyond a corner of the mesh, which would have
-// to be folded, all faces around the corner are made anew. What makes faults is left as it was (fill_all()).
-// Nothing is done where it is not planes that the mesh is made of. Precondition: the surface is closed. Returns whether
-// any gap has been filled; else the surface is as it was. The same for any number of threads. Needs
+// Fills gaps that are left, as far as that makes no faults (fill_all()). Where faces of a plane reach beyond a corner
+// of the mesh, so that fill_gap() would have to fold them, all faces around the corner are made anew. Does nothing
+// unless the surface is mostly in planes (are_mostly_in_planes()). Returns whether any gap has been filled; else the
+// surface is as it was. Precondition: the surface is closed. The same for any number of threads. Needs
 // DefaultFloatingPoint.
 [[nodiscard]] bool fill_corner_gaps(SurfaceMesh& surface, const SharpenInput& input, const Lattice& lattice,
                                     const SharpenLimits& limits);

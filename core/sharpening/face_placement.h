@@ -10,16 +10,19 @@
 
 namespace raycone {
 
-// In the plane of its source, or over a hole; off that plane; or so much turned against it, too, that it may lead
-// across a sharp edge. Fine tessellations are off, and hardly turned.
+// Where a face is: in the plane of its source, or without a source; off that plane; or off it and turned against it by
+// more than 3 degrees, so that it may lead across a sharp edge. Faces of fine tessellations are mostly off, and hardly
+// turned.
 enum class Placed : std::uint8_t { kInPlane, kOff, kAcross };
 
-// Of each face. `normals`: of `input`; `off`: how far corners may be from a plane that they are in, world units.
+// Per face of the surface. `normals`: of `input`; `off`: how far corners of a face in a plane may be from it, world
+// units.
 [[nodiscard]] std::vector<Placed> placements(const SurfaceMesh& surface, const TriangleMesh& input,
                                              const TriangleNormals& normals, double off);
 
-// Whether it is planes that the mesh is made of: three of four faces are in one. Of CAD parts 75 to 99 per cent of the
-// faces are, of scans less than 70. `fewer`: faces in planes than there would be without polygons, which count.
+// Whether the mesh is made of planes: three of four faces are in one. Of CAD parts 75 to 99 per cent of the faces are,
+// of scans less than 70. `fewer`: how many faces in planes there are less than without polygons
+// (ContouredSurface::fewer); they count, too.
 [[nodiscard]] bool are_mostly_in_planes(const std::vector<Placed>& placements, std::uint64_t fewer);
 
 }  // namespace raycone

@@ -13,8 +13,8 @@
 
 namespace raycone {
 
-// What is around a gap: a simple loop, in the direction in which faces of the gap run along it. Side i leads from
-// corner i to the next one.
+// What is around a gap: a simple loop, in the direction in which the gap's faces run along it. Side i leads from corner
+// i to the next one; the face behind it is the one beyond the gap.
 struct GapLoop {
   std::vector<Vec3> corners;
   std::vector<std::int32_t> sources;  // of the face behind each side, in whose plane the side is
@@ -38,14 +38,15 @@ struct GapLimits {
   std::function<bool(std::span<const Vec3>)> are_on_mesh;        // all of them
 };
 
-// The planes behind a loop, continued until they meet: in straight lines between corners of the loop that are in both,
-// and in points of three planes. Nothing where that leads off the mesh, or planes would have to be folded. Whether the
-// triangles meet others, or each other, is not looked at beyond their planes.
+// Fills a gap with the planes behind its loop, continued until they meet: two planes along a straight line between
+// corners of the loop that are in both, three in a new corner. Nothing where that leads off the mesh, needs more new
+// corners than allowed, or would fold a plane. Whether triangles of different planes meet, or meet other faces, is not
+// looked at.
 [[nodiscard]] std::optional<GapFill> fill_gap(const GapLoop& loop, const TriangleMesh& input, const GapLimits& limits);
 
-// The planes behind a loop that goes around a corner of the mesh, continued to that, the one new corner: sectors of
-// them. Nothing where it is not in all these planes, or they lead off the mesh or would have to be folded. `reach` only
-// says how closely lines and triangles are looked at.
+// Fills a gap around a corner of the mesh with sectors of the planes behind its loop, which meet in that corner, the
+// one new one. Nothing where the corner is not in all these planes, or where the sectors lead off the mesh or would
+// have to be folded. `limits.reach` only says how closely lines and triangles are looked at.
 [[nodiscard]] std::optional<GapFill> fill_gap_from(const Vec3& corner, const GapLoop& loop, const TriangleMesh& input,
                                                    const GapLimits& limits);
 

@@ -18,9 +18,10 @@ struct FilledGap {
   GapFill filled;
 };
 
-// Fills gaps of a closed surface, of which no two have a face in common. If that makes faults, the surface is as it
-// was: returns the numbers of the fills that are at these, all where that is not known. Only what is near a change is
-// looked at (faults_near(), changed_nodes()). The same for any number of threads. Needs DefaultFloatingPoint.
+// Fills gaps of a closed surface, no two of which have a face in common. Returns nothing where that makes no faults.
+// Else the surface is as it was, and returned are the places in `fills` of those at faults; of all, where none is known
+// to be. Only what is near a change is looked at (faults_near(), changed_nodes()). The same for any number of threads.
+// Needs DefaultFloatingPoint.
 [[nodiscard]] std::vector<std::size_t> fill_all(SurfaceMesh& surface, const std::vector<FilledGap>& fills,
                                                 const Lattice& lattice);
 

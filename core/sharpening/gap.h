@@ -29,8 +29,8 @@ struct GapSide {
   std::uint32_t from, to, face, beyond;
 };
 
-// `first`, and the faces that hang together with it for which joins(face) holds; increasing. It must hold once for
-// each.
+// `first` and the faces that hang together with it by sides, as far as joins(face) holds; increasing. joins() must hold
+// once for each face and then no longer, and not for `first`.
 template <class Faces, class Joins>
 [[nodiscard]] std::vector<std::uint32_t> faces_joined_to(std::uint32_t first, const Faces& faces, const Joins& joins) {
   std::vector<std::uint32_t> gap{first};
@@ -45,9 +45,9 @@ template <class Faces, class Joins>
   return gap;
 }
 
-// The sides of the border of a gap one after the other, around each corner within the gap; from one that does not
-// depend on numbers. Nothing where there are several borders or too many sides, or it is not known what is beyond.
-// `gap`: increasing.
+// The sides of a gap's border, one after the other; around each corner they go on within the gap. The first one depends
+// on positions alone. Nothing where there are several borders or more than `most_sides`, or where a face beyond is not
+// known. `gap`: increasing.
 template <class Faces>
 [[nodiscard]] std::vector<GapSide> border_of_gap(const std::vector<std::uint32_t>& gap, const Faces& faces,
                                                  std::size_t most_sides) {
@@ -82,7 +82,7 @@ template <class Faces>
   return border;
 }
 
-// What fills a gap with this border goes along. Nothing at a hole.
+// The loop that goes around the fill of a gap with this border. Nothing where a face beyond closes a hole.
 template <class Faces>
 [[nodiscard]] std::optional<GapLoop> loop_along(const std::vector<GapSide>& border, const Faces& faces) {
   GapLoop loop;
@@ -97,7 +97,7 @@ template <class Faces>
   return loop;
 }
 
-// The vertices of a gap that are not on its border, increasing; none where the gap is no disc.
+// The vertices of a gap that are not on its border, increasing. None where the gap is no disc.
 template <class Faces>
 [[nodiscard]] std::optional<std::vector<std::uint32_t>> vertices_within(const std::vector<std::uint32_t>& gap,
                                                                         const std::vector<GapSide>& border,

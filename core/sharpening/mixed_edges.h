@@ -21,10 +21,10 @@ class MixedEdges {
   MixedEdges(const SharpenInput& input, const NodeSet& inside, const SharpenLimits& limits)
       : input_(input), inside_(inside), lattice_(inside.lattice()), limits_(limits) {}
 
-  // Those of the vertices that `change` has moved which are to be kept where they were, as a face crosses an edge off
-  // the mesh since: what was pulled off that edge; else the corners of the face, and all of these if none has moved.
-  // Without what fill_corner_gaps() will mend: the first call that finds such faces finds out where it does. Uses
-  // threads; the same for any number of them.
+  // The vertices to keep where they were, as a face crosses a mixed edge off the mesh after `change`: those that were
+  // pulled off that edge; else the face's corners that have moved; else all its corners. In no order, some more than
+  // once. Crossings that fill_corner_gaps() will mend do not count: the first call that finds any tries that. Uses the
+  // threads that ThreadLimit allows; the same for any number of them.
   [[nodiscard]] std::vector<std::uint32_t> vertices_off(const SurfaceMesh& surface, const SurfaceEdit& change);
 
  private:

@@ -23,48 +23,50 @@ struct SharpenInput {
 };
 
 struct SharpenLimits {
-  double off = 0.0;    // a face is in the plane of its source if its corners are not farther from it, world units
-  double reach = 0.0;  // how far a vertex is pulled at most, likewise
+  double off = 0.0;    // a face is in its source's plane if its corners are no farther off, world units
+  double reach = 0.0;  // how far a vertex is pulled at most, world units
   CoordinatePrecision precision = CoordinatePrecision::kDouble;  // of vertices
   std::uint64_t fewer = 0;                                       // faces in planes than there would be without polygons
 };
 
 // Where a sharp edge passes between outside nodes, contour() cuts it off: a strip of faces runs from a plane of the
-// mesh to another one, or to several at a corner, and lies in none of them. Each two neighbours on different sides of
-// such a strip become one vertex where their planes meet, if that is a point of the mesh. Faces in planes of the mesh
-// stay in them and keep their fronts; what is left of strips vanishes between them. Where less than three of four faces
-// are in planes, strips are judged one by one: those stay as they are of which too many faces are in none. Whether
-// faces intersect now, or nodes have changed sides, is not looked at. The same for any number of threads. Needs
-// DefaultFloatingPoint.
+// mesh to another one, or to several at a corner, and lies in none of them. Here, each two neighbours on different
+// sides of such a strip become one vertex where their planes meet, if that is a point of the mesh. Faces in planes of
+// the mesh stay in them and keep their fronts; what is left of strips between them vanishes. Where fewer than three of
+// four faces are in planes, strips are judged one by one: those with too many faces in no plane stay as they are.
+// Whether faces intersect afterwards, or nodes have changed sides, is not checked. Uses the threads that ThreadLimit
+// allows; the same for any number of them. Needs DefaultFloatingPoint.
 class Sharpener {
  public:
-  // Adds spare vertices and faces to the surface, which are gone at first. Precondition: sources are triangles of the
-  // input, or kHole. Both meshes must stay, and nobody else may change them, and so must the input's distance.
+  // Adds spare vertices and faces to the surface, which count as gone at first. Precondition: sources are triangles of
+  // the input, or kHole. Surface, mesh and distance must outlive this, and nobody else may change them.
   Sharpener(SurfaceMesh& surface, const SharpenInput& input, const SharpenLimits& limits);
   Sharpener(const Sharpener&) = delete;
   Sharpener& operator=(const Sharpener&) = delete;
 
-  // Pulls. Returns what that has changed. What is left of strips may turn over on the way, and may then cross other
-  // faces.
+  // Pulls vertices, and returns what that has changed. What is left of strips may turn over on the way, and may then
+  // cross other faces.
   SurfaceEdit sharpen();
-  // What keep() leaves where it was: vertices that were pulled into one of those named, and these; the same, where
-  // nothing is wrong but that a face has left the mesh; or all that hang together with them by faces of strips.
+  // What keep() leaves where it was: the vertices named and those that were pulled into them; the same, where nothing
+  // is wrong but that a face has left the mesh; or all vertices of the strips that hang together with those named.
   enum class Kept { kPulled, kPulledOffMesh, kStrips };
-  // Makes the surface what it is if vertices at `vertices` are not pulled. Strips that hang together with them are
-  // pulled anew, and do not turn over, but for kPulledOffMesh. Numbers of other vertices are ignored. Returns what that
-  // has changed, with the faces at `vertices` in any case, so that faults there are looked for again.
+  // Changes the surface to what it is if the vertices at `vertices` are not pulled. Strips that hang together with them
+  // are pulled anew; their faces may then not turn over, but for kPulledOffMesh. Numbers of vertices that are of no
+  // strip are ignored. Returns what has changed, with all faces at `vertices`, so that faults there are looked for
+  // again.
   SurfaceEdit keep(const std::vector<std::uint32_t>& vertices, Kept kept);
 
   // What has been changed of the surface as it was at first.
   [[nodiscard]] SurfaceEdit all_changes() const;
 
-  // Either of these comes last. Back to the surface as it was at first, without spare vertices and faces.
+  // Call undo() or finish() last. Back to the surface as it was at first, without spare vertices and faces.
   void undo();
   // Drops faces that are gone, and vertices that no face has.
   void finish();
 
   [[nodiscard]] std::size_t pulls() const;
-  // Where pulled vertices are now; each once for all that were pulled there.
+  // Calls visit(vertex, place) for each vertex of a strip that has not been pulled into another. `place`: where it is
+  // now.
   template <class Visit>
   void for_each_target(const Visit& visit) const {
     for (std::uint32_t n = 0; n < strip_vertices_.size(); ++n) {

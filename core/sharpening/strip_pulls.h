@@ -19,10 +19,10 @@ namespace raycone {
 // Strips that hang together. Faces have their places among those of all strips; vertices are those of the surface.
 class StripPulls {
  public:
-  // All three must stay. Sets the part's state to that at first.
+  // All three must outlive this. Puts the part's state back to what it was at first.
   StripPulls(const Sharpener& all, const Sharpener::Part& part, Sharpener::State& state);
 
-  // Returns the number of pulls, and of gaps filled.
+  // Returns how many vertices were pulled and gaps filled, added up.
   std::size_t pull_all();
 
   // For gap.h.

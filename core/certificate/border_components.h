@@ -13,11 +13,12 @@ namespace raycone {
 // The triangles of each component.
 [[nodiscard]] std::vector<std::vector<Triangle>> triangles_of(const Components& components, const TriangleMesh& mesh);
 
-// Leaves the components that are `kept`, in their order, and their vertices.
+// Leaves only the components that are `kept` (by their numbers), in their order, and their vertices.
 void keep_components(SurfaceMesh& surface, const Components& components, const std::vector<bool>& kept);
 
-// Leaves the components at which the rule ceases to hold: it does behind them, and not in front. Returns whether no
-// other one is its border, too, the wrong way around, and any is left. Precondition: the mesh is closed and free of
+// Leaves the components at which the rule ceases to hold: it holds behind them, and not in front. Returns true if that
+// is the whole border. False, and the surface stays, where the rule holds in front of a component and not behind it, or
+// a component has no volume; false also where no component is left. Precondition: the mesh is closed and free of
 // self-intersections.
 [[nodiscard]] bool keep_border(SurfaceMesh& surface, const Rule& rule);
 

@@ -12,7 +12,7 @@
 
 namespace raycone {
 
-// What is wrong with a mesh; all of it 0 where it is right.
+// How many things are wrong with a mesh; all 0 where it is right.
 struct SurfaceFaults {
   std::uint64_t edges = 0;             // that are not of two faces in opposite directions
   std::uint64_t links = 0;             // vertices whose faces are no single fan around them
@@ -27,19 +27,19 @@ struct SurfaceFaults {
   }
 };
 
-// Looks for all of them but places, exactly. So a mesh without faults is closed, a 2-manifold and free of
-// self-intersections, with the `inside` nodes of the lattice, and no others, behind its fronts. Every vertex is of a
+// Looks for all faults but `places`, exactly. A mesh without faults is closed, a 2-manifold and free of
+// self-intersections, has the `inside` nodes of the lattice, and no others, behind its fronts, and no vertex without a
 // triangle. Sets `misplaced`, where given, to the nodes on the wrong side: misplaced_nodes().
 [[nodiscard]] SurfaceFaults faults_of(const TriangleMesh& mesh, const NodeSet& inside, NodeSet* misplaced = nullptr);
 
-// Whether a mesh has none of these faults, but for nodes and places. Sooner where it has any.
+// Whether a mesh has none of these faults, nodes and places aside. Faster where it has some.
 [[nodiscard]] bool is_closed_and_embedded(const TriangleMesh& mesh);
 
-// The vertices at these faults, in increasing order. Takes longer, as it looks for all.
+// The vertices at faults of these kinds, in increasing order. Slower, as it looks for all.
 [[nodiscard]] std::vector<std::uint32_t> vertices_at_faults(const TriangleMesh& mesh);
 
-// The nodes of the lattice that are on the other side of a closed mesh than `inside` has them.
-// `edges`: its exterior edges, where known, to spare finding them.
+// The nodes of the lattice that a closed mesh has on the other side than `inside` does. `edges`: its exterior edges, to
+// spare finding them; null: not known.
 [[nodiscard]] NodeSet misplaced_nodes(const TriangleMesh& mesh, const NodeSet& inside,
                                       const std::vector<ExteriorEdge>* edges = nullptr);
 
@@ -49,17 +49,16 @@ struct NearFaults {
   std::vector<std::uint32_t> vertices;  // increasing; not those of misplaced nodes
 };
 
-// The faults that faults_of() finds in a mesh since it was changed: each that a changed face has part in, and equal
-// vertices nearby. An edge that is wrong counts as two vertices whose faces are no cycle. Sorts what is near the
-// change, after a look at each face, in a bit or more per cell of the lattice. `mesh`: after the change; within the
-// lattice, or not far from it; without the faces that are gone, and the vertices that no face has. But for nodes: these
-// are changed_nodes().
+// The faults that a mesh has since it was changed: each that a changed face has part in, and equal vertices nearby.
+// Nodes are not among them: changed_nodes() finds these. A wrong edge counts as two links. `mesh`: after the change;
+// within the lattice, or not far from it. Faces that are gone, and vertices that no face has, are ignored. Looks at
+// each face once, and sorts what is near the change, in a bit or more per cell of the lattice.
 [[nodiscard]] NearFaults faults_near(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice);
 
-// The nodes of a lattice that a mesh goes around an odd number of times more, or less, since it was changed: that were
-// on the other side of it, where it does not pass through itself, now or before. What follows one after the other adds
-// up: of several changes, a node has changed sides if an odd number of them has it. Precondition: the mesh is closed,
-// and was so before.
+// The nodes of a lattice that changed sides when a mesh was changed: the mesh goes around them an odd number of times
+// more, or less, than before. So of several changes in a row, a node has changed sides if an odd number of them has it.
+// Where the mesh passes through itself, before or after, a node may be counted that did not change sides. `mesh`: after
+// the change. Precondition: the mesh is closed, and was so before.
 [[nodiscard]] NodeSet changed_nodes(const TriangleMesh& mesh, const SurfaceEdit& change, const Lattice& lattice);
 
 // "3 edges without a twin, 1 pairs of faces that intersect"

@@ -10,7 +10,7 @@ namespace raycone {
 
 struct ComponentSigns {
   Components components;
-  std::vector<int> of_component;  // volume_sign()
+  std::vector<int> of_component;  // its volume_sign(): 1 outward, -1 inward, 0 flat
 
   [[nodiscard]] int of_vertex(std::uint32_t vertex) const { return of_component[components.of_vertex[vertex]]; }
 };

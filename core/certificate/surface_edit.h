@@ -17,10 +17,11 @@ struct SurfaceEdit {
   struct Corners {
     Triangle before, after;
   };
-  // Numbers of faces, each once: all that have other corners, or a corner that is elsewhere. They may be the same.
+  // Numbers of faces, each once: all that have other corners, or a corner that is elsewhere. A face may be named
+  // without a change.
   std::vector<std::uint32_t> faces;
   std::vector<Corners> corners;  // of each of them
-  // Numbers of vertices, each once, that are elsewhere; and where they were and are.
+  // Numbers of vertices that are elsewhere, each once; and where each was and is.
   std::vector<std::uint32_t> vertices;
   std::vector<Place> places;
 

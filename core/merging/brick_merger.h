@@ -30,13 +30,13 @@ class BrickMerger {
 
   void merge_all(const SurfaceBricks& bricks);
 
-  // But for those that are `known`. Adds to `changed` of each of the others the vertices with faces in other bricks,
-  // too, that have other faces in this one now. Both have one element a brick.
+  // Merges all bricks but those that have a 1 in `known`. Adds to `changed`, for each of these bricks, its vertices
+  // that other bricks share and that have other faces in it now. Both have one element per brick.
   void merge_unknown(const SurfaceBricks& bricks, const std::vector<std::uint8_t>& known,
                      std::vector<std::vector<std::uint32_t>>& changed);
 
-  // Those bricks alone that have a vertex of `changed`, from the triangles of `first` on, as merge_all() would: a
-  // vertex that is kept or is no longer so matters to the one brick that has all of its faces.
+  // Merges anew the bricks that own a vertex of `changed`, from the triangles of `first` on; the result is that of
+  // merge_all(). Whether a vertex is kept matters to no brick but the one that owns it.
   void merge_again(const SurfaceBricks& bricks, const std::vector<std::uint32_t>& changed,
                    const std::vector<Triangle>& first);
 

@@ -13,10 +13,10 @@
 
 namespace raycone {
 
-// What is left of a surface, and what is wrong with that.
+// A merged surface with faults.
 struct FaultyMerge {
   const MergedFaces& merged;
-  const TriangleMesh& mesh;  // its faces, in their order
+  const TriangleMesh& mesh;  // the faces of `merged`, in their order
   const SurfaceFaults& faults;
   const NodeSet& misplaced;
 };
@@ -30,14 +30,14 @@ class KeptVertices {
   explicit KeptVertices(const SurfaceMesh& surface)
       : surface_(&surface), kept_(surface.mesh.vertices.size()), at_home_(kept_) {}
 
-  // Those that are not merged; and those of them that are not moved either. By their numbers.
+  // Per vertex: whether it is not merged; and, of those, whether it is not moved either.
   [[nodiscard]] const std::vector<bool>& kept() const { return kept_; }
   [[nodiscard]] const std::vector<bool>& at_home() const { return at_home_; }
 
-  // Keeps these, too.
+  // Keeps these vertices, too, in merging.
   void keep(std::span<const std::uint32_t> vertices);
 
-  // Keeps more, as what is left in this round has faults. Returns whether there are any.
+  // Keeps more vertices, as the merge of this round (from 0) has faults. Returns whether there are any more to keep.
   bool keep_more(const FaultyMerge& found, int round);
 
  private:

@@ -12,28 +12,30 @@
 
 namespace raycone {
 
-// Faces of a surface whose vertices are pulled into others. Numbers of vertices are those of before.
+// The faces of a surface some of whose vertices are pulled into others. Vertices keep the numbers they had before.
 struct MergedFaces {
   std::vector<Triangle> triangles;
   std::vector<std::int32_t> sources;
-  std::vector<std::uint32_t> into;   // of each vertex, what it was pulled into; itself, where it stayed
-  std::vector<std::uint32_t> faces;  // of PlaneMerger alone: the numbers that its faces had before, increasing
+  std::vector<std::uint32_t> into;   // of each vertex, the one that it was pulled into; itself where it stayed
+  std::vector<std::uint32_t> faces;  // from PlaneMerger: the numbers of the faces before, increasing; else empty
 };
 
 class BrickMerger;
 struct SurfaceBricks;
 
-// The faces of a closed surface with vertices pulled into neighbours along edges, wherever all faces around stay in the
-// planes that they are in (`input`'s, where they have a source in it): flat parts get larger faces, straight edges
-// longer ones. Faces keep their order and sources. The same surface everywhere, topologically and within `limits.most`;
-// but where planes agree only up to rounding, faces that come as near to others may cross them. `lattice`: of about the
-// size of the faces. The same for any number of threads, and whatever was kept before.
+// Pulls vertices of a closed surface into neighbours along edges, wherever all faces around stay in the planes that
+// they are in (`input`'s, where they have a source in it): flat parts get larger faces, straight edges longer ones.
+// Faces keep their order and sources, and the surface its topology. Each pull stays within `limits.most` of the planes
+// around it; many in a row may add up (left_behind()). Where planes agree only up to rounding, faces that come as near
+// to others may cross them. `lattice`: of about the size of the faces. Uses the threads that ThreadLimit allows; the
+// same for any number of them, and whatever was kept before.
 class PlaneMerger {
  public:
-  // All of them must stay as they are.
+  // All of them must outlive this, and stay as they are.
   PlaneMerger(const SurfaceMesh& surface, const TriangleMesh& input, const Lattice& lattice, const MergeLimits& limits);
 
-  // Vertices of `kept` stay. Where few of them are others than in the last call, takes a fraction of its time.
+  // Leaves the vertices of `kept` where they are. Where `kept` hardly differs from the last call's, takes a fraction of
+  // its time.
   [[nodiscard]] MergedFaces merge(const std::vector<bool>& kept);
 
  private:

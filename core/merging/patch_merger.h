@@ -14,11 +14,12 @@ namespace raycone {
 
 enum class VertexRole : std::uint8_t {
   kFree,
-  kKept,     // not pulled
-  kForeign,  // nor is another one pulled into it: it has faces outside of the patch, or is at a node with one that has
+  kKept,     // is not pulled
+  kForeign,  // nor is any pulled into it: it has faces outside of the patch, or is at a node with a vertex that has
 };
 
-// Numbers of vertices are the patch's own. Faces around vertices that are not foreign close up to one fan.
+// A piece of a surface, with numbers of vertices of its own. Faces around a vertex that is not foreign close up to one
+// fan.
 struct SurfacePatch {
   std::vector<Vec3> vertices;
   std::vector<VertexRole> roles;
@@ -29,15 +30,16 @@ struct SurfacePatch {
 
 // How far merging may go, world units.
 struct MergeLimits {
-  double most = 0.0;    // from a plane to what is pulled
-  double needle = 0.0;  // triangles lower than this have no say where a vertex moves by less
+  double most = 0.0;    // how far a point may be off a plane that it is in
+  double needle = 0.0;  // triangles lower than this are ignored where a vertex moves by less
 };
 
 class PatchMerger {
  public:
   static constexpr std::size_t kMostFaces = 0x3FFFFFFF;  // their corners have numbers of 32 bits
 
-  // `input`: what sources are numbers of. Both stay where they are while this lives. Precondition: at most kMostFaces.
+  // `input`: what sources are numbers of. `patch` and `input` must outlive this, and stay as they are. Precondition: at
+  // most kMostFaces.
   PatchMerger(const SurfacePatch& patch, const TriangleMesh& input, const MergeLimits& limits);
 
   // Pulls what can be pulled. Call it once.
@@ -48,8 +50,8 @@ class PatchMerger {
   [[nodiscard]] const Triangle& triangle(std::size_t face) const { return faces_[face].corners; }
   [[nodiscard]] const std::vector<std::uint32_t>& into() const { return into_; }
 
-  // Whether a vertex of the patch that is still there would stay wherever it were looked at, in any other patch, as
-  // long as the faces around it are these.
+  // Whether a vertex of the patch that is still there would stay in any other patch, too, as long as the faces around
+  // it are these.
   [[nodiscard]] bool is_settled(std::uint32_t v) const;
 
   // Whether the faces around a vertex are others than at first.

@@ -15,16 +15,17 @@ namespace raycone {
 
 class RepeatedCheck {
  public:
-  // Both must stay. `vertices`: how many the surface had before it was merged.
+  // `inside` must outlive this. `vertices`: how many the surface had before it was merged.
   RepeatedCheck(const NodeSet& inside, std::size_t vertices) : inside_(inside), vertices_(vertices) {}
 
-  // What faults_of() says of a mesh. Faces that were in the last one, with corners of the same numbers in the same
-  // places, are looked at with new ones only, unless they had faults. `merged`: the faces of the mesh, in its order.
+  // The faults of a mesh, as faults_of() finds them, but that a wrong edge may count as two links. Two faces that were
+  // both in the last mesh, with the same corners in the same places, are not looked at again, unless they had faults.
+  // `merged`: the faces of the mesh, in its order. Sets `misplaced` to the nodes on the wrong side.
   [[nodiscard]] SurfaceFaults faults(const MergedFaces& merged, const TriangleMesh& mesh, NodeSet& misplaced) const;
-  // Makes a surface the last one whose faces and vertices are all numbered as they are. It has no faults, but perhaps
-  // nodes on the wrong side.
+  // Makes the last mesh a whole surface, before anything is merged. It has no faults, but perhaps nodes on the wrong
+  // side.
   void remember_whole(const SurfaceMesh& surface);
-  // Makes it the last one.
+  // Makes `mesh`, which has these faults, the last one.
   void remember(const MergedFaces& merged, const TriangleMesh& mesh, const SurfaceFaults& faults);
 
  private:

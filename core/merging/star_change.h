@@ -12,19 +12,19 @@
 
 namespace raycone {
 
-// Faces before and after are compared along one direction, in which all of them are seen from their fronts and the
-// vertex's neighbours around it once. Both sets of faces are then graphs over one polygon, and their difference is
-// linear between the crossings of their edges.
+// Faces before and after are compared along one direction: all of them are seen from their fronts, and the vertex's
+// neighbours go around it once. Both sets of faces are then graphs over one polygon, and their difference is linear
+// between the crossings of their edges.
 class StarChange {
  public:
   // `ring`: the neighbours in the order of the faces around `vertex`.
   StarChange(const Vec3& vertex, const std::vector<Vec3>& ring);
 
-  // The vertex is pulled into the neighbour of this number. All that follows is about the last such call.
+  // Pulls the vertex into the neighbour of this number in `ring`. All that follows is about the last such call.
   void pull_into(std::size_t target);
 
-  // No point of the faces after is farther from those before, and the other way round. Nothing where that is not below
-  // `most`, or where there is no such direction.
+  // A bound of how far points of the faces after are from those before, and the other way round, world units. None
+  // where it is not below `most`, or where there is no such direction.
   [[nodiscard]] std::optional<double> distance(double most) const;
 
   // Whether a node of the lattice is, or may be, between the faces before and after. Precondition: distance() is

@@ -19,7 +19,7 @@ struct SurfaceBricks {
   SortedByKey<std::uint32_t> faces;   // by brick, their numbers
   std::vector<std::uint32_t> owner;   // of each vertex the brick that has all of its faces; kNone where several bricks
                                       // have some, kUnmet where none has
-  std::vector<std::uint32_t> places;  // of each brick among all of the lattice's
+  std::vector<std::uint32_t> places;  // of each brick among all of the lattice's, with faces or without
 
   [[nodiscard]] std::size_t count() const { return faces.keys(); }
   [[nodiscard]] std::uint32_t place_of_owner(std::uint32_t vertex) const {
@@ -29,8 +29,8 @@ struct SurfaceBricks {
   [[nodiscard]] std::vector<std::uint32_t> by_place() const;
 };
 
-// A face is in the brick of its first corner. Bricks are of 32^3 voxels, moved by `shift` of their sides. The same for
-// any number of threads. Uses the threads that ThreadLimit allows.
+// A face is in the brick of its first corner. Bricks have sides of 32 voxels, and are all moved along each axis by
+// `shift`, a fraction of a side. Uses the threads that ThreadLimit allows; the same for any number of them.
 [[nodiscard]] SurfaceBricks bricks_of(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                                       const Lattice& lattice, double shift);
 

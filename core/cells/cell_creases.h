@@ -20,12 +20,13 @@ namespace raycone {
 // Creases are sharp where the cosine between their triangles is at most this: from 15 degrees on.
 inline constexpr double kSharpCosine = 0.9659258262890683;
 
-// A crease is an edge that is not of two triangles, or whose triangles are at 0.1 degrees or more; a fine one, at 1e-7
-// radians or more, but less. It is sharp if they are at 15 degrees or more, or not two. Thread-safe.
+// Sharp edges of a mesh. A crease is an edge of two triangles at an angle of 0.1 degrees or more, or an edge that is
+// not of two triangles; it is sharp at 15 degrees or more, or if it is not of two. A fine crease is at 1e-7 radians or
+// more, but less than 0.1 degrees. Const functions are thread-safe.
 class CellCreases {
  public:
   CellCreases() = default;  // none
-  // The first three as long as this. Precondition: `mesh` is welded.
+  // The first three must outlive this. Precondition: `mesh` is welded.
   CellCreases(const TriangleMesh& mesh, const TriangleNormals& normals, const CellTriangles& triangles,
               const SurfaceCells& cells);
 
@@ -37,21 +38,22 @@ class CellCreases {
     std::array<std::uint32_t, 2> triangles;  // that it is of; twice the same one where these are not two
   };
 
-  // Sets `found` to each crease, and each fine one, with a point in the closed cell, and some more, in the order of
+  // Sets `found` to all creases, fine ones too, with a point in the closed cell, and some more, in the order of
   // triangles.
   void find(std::uint32_t cell, std::vector<Crease>& found) const;
 
-  // Whether a crease, or a fine one, may end in a cell, or no farther from it than `off` along each axis: most have
-  // none.
+  // Whether a crease, or a fine one, may end in a cell, or no farther from it than `off` (world units) along each axis.
+  // Of most cells: no.
   [[nodiscard]] bool may_end_near(std::uint32_t cell, double off) const {
     return !(off <= end_reach_) || near_ends_[cell] != 0;
   }
-  // The unit normal of a triangle that is the source of a point; zero of kHole, of triangles without area, and where
-  // there are no creases.
+  // The unit normal of the triangle `source`. Zero for kHole, for triangles without area, and where there are no
+  // creases.
   [[nodiscard]] Vec3 normal_of(std::int32_t source) const {
     return source == kHole || !normals_ ? Vec3{} : normals_->of(static_cast<std::uint32_t>(source));
   }
-  // The same for triangles that hang together by edges that are no creases, nor fine ones: a flat part of the mesh.
+  // Which flat part of the mesh a triangle is of: a number that is the same for triangles that hang together by edges
+  // that are no creases, not even fine ones.
   [[nodiscard]] std::uint32_t part_of(std::uint32_t triangle) const { return parts_[triangle]; }
 
  private:
@@ -74,7 +76,8 @@ class CellCreases {
 // Which creases of a cell count.
 enum class CreaseKinds : std::uint8_t { kNotFine, kAll };
 
-// The creases of one cell after the other, looked up when they are first asked for. Fine ones count where it is said.
+// The creases of one cell after the other, looked up when they are first asked for. Fine creases count only where that
+// is said. Not thread-safe.
 class CreasesHere {
  public:
   // `creases` must outlive this.
@@ -87,16 +90,17 @@ class CreasesHere {
 
   [[nodiscard]] const CellCreases& all_creases() const { return creases_; }
 
-  // Whether a crease meets a triangle of the cell within a distance of `p`, which is more than what coordinates round.
+  // Whether a crease meets a triangle within the cell no farther than `distance` from `p`. The distance must be more
+  // than what coordinates round.
   [[nodiscard]] bool has_hit_near(const Corners3& corners, const Vec3& p, double distance,
                                   CreaseKinds kinds = CreaseKinds::kNotFine);
 
-  // The point of a sharp crease on a triangle of the cell that is farthest from the line through two points of that
-  // triangle.
+  // The point of a sharp crease on a triangle within the cell that is farthest from the line through p and q, two
+  // points of the triangle.
   [[nodiscard]] std::optional<Vec3> farthest_hit(const Corners3& corners, const Vec3& p, const Vec3& q);
 
-  // How the mesh leads from one of its triangles to another one within a triangle of the cell, from flat part to flat
-  // part: the points of the creases in between, and the triangle beyond each of them.
+  // How the mesh leads from one of its triangles to another one, seen in a triangle within the cell, from flat part to
+  // flat part: the points of the creases in between, and the triangle beyond each of them.
   struct Section {
     static constexpr std::size_t kMost = 3;
     struct Corner {
@@ -109,14 +113,16 @@ class CreasesHere {
   // Fine creases count.
   [[nodiscard]] Section section(const Corners3& corners, std::uint32_t from, std::uint32_t to);
 
-  // The point of a crease in a tetrahedron of the cell that is nearest to another one; of ends of creases within the
-  // tetrahedron, with barycentric coordinates above `margin`. Both are relative to the first corner. Off by rounding.
+  // The point of a crease in a tetrahedron within the cell that is nearest to `near`; the same of ends of creases whose
+  // barycentric coordinates are above `margin`. Points are relative to the tetrahedron's first corner, and off by
+  // rounding.
   [[nodiscard]] std::optional<Vec3> nearest_within(const BarycentricCoordinates& within, const Vec3& near,
                                                    CreaseKinds kinds = CreaseKinds::kNotFine);
   [[nodiscard]] std::optional<Vec3> nearest_end_within(const BarycentricCoordinates& within, const Vec3& near,
                                                        double margin);
 
-  // The point where creases end in a box: none, one, or many. A point nearer than `off` to the border counts as many.
+  // The point where creases end in a box: none, one, or many. An end nearer to the box's border than `off` (world
+  // units) counts as many.
   struct Ends {
     std::optional<Vec3> one;
     bool many = false;

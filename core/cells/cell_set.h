@@ -14,13 +14,13 @@
 
 namespace raycone {
 
-// Boxes have the cells that they meet, up to rounding: two that meet have one in common, for rounding is monotone. What
-// is outside of the lattice has the cells at its border. Large boxes have larger cells, so that none has many: at level
-// n these are 2^n of the lattice's along each axis.
+// Boxes have the cells that they meet, up to rounding. Two boxes that meet have a cell in common, for rounding is
+// monotone. What is outside of the lattice has the cells at its border. Large boxes have larger cells, so that none has
+// many: at level n, 2^n cells of the lattice along each axis.
 class CellSet {
  public:
   using Cell = std::array<std::int32_t, 3>;
-  // Those of a box: all from the first to the last along each axis.
+  // The cells of a box: all from the first to the last along each axis.
   struct Range {
     Cell first, last;
   };
@@ -39,7 +39,7 @@ class CellSet {
 
   [[nodiscard]] Cell cell_of(const Vec3& p) const { return {cell_at(p, 0), cell_at(p, 1), cell_at(p, 2)}; }
 
-  // The cells of the box of a triangle with corners in these ones.
+  // The cells of the box of a triangle with corners in these cells.
   [[nodiscard]] static Range range_of(const Cell& a, const Cell& b, const Cell& c) {
     Range range;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -56,7 +56,8 @@ class CellSet {
     // Where all cells were there, the larger ones that they are in are, too.
     while (level < any_.size() && add(range, level, any_[level])) ++level;
   }
-  // Whether that has been inserted; or, where it is large, something that is nearer than its size.
+  // Whether a range that was inserted has a cell in common with this one; or, where one of the two is large, perhaps is
+  // only nearer than its size.
   [[nodiscard]] bool meets(const Range& range) const {
     std::size_t level = level_of(range);
     if (has(range, level, any_[level])) return true;

@@ -13,7 +13,7 @@ namespace raycone {
 class CellTriangles {
  public:
   CellTriangles() = default;  // of no cells
-  // Both only while this is made.
+  // `mesh` and `cells` are needed only here.
   CellTriangles(const TriangleMesh& mesh, const SurfaceCells& cells);
 
   // Each triangle that has a point in the closed cell, and some more; in increasing order.

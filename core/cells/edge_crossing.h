@@ -18,7 +18,7 @@ namespace raycone {
 struct SegmentHit {
   double at = 0.0;  // p + at (q - p); within 1e-15 of the exact number, unless the triangle is a needle
   std::uint32_t triangle = 0;
-  std::int8_t jump = 0;  // by how much the triangle changes w there, on the way from p to q; 0: nobody knows
+  std::int8_t jump = 0;  // by how much w changes there on the way from p to q; 0: not known
 };
 
 // The point that the closed segment and the closed triangle have in common, where there is just one: nothing where the
@@ -33,12 +33,12 @@ class HitFinder {
   // The mesh must stay as it is.
   explicit HitFinder(const TriangleMesh& mesh) : mesh_(mesh) {}
 
-  // From now on it is about segments of this end, and these triangles of the mesh.
+  // From now on find() is about segments from this end, and about these triangles of the mesh.
   void enter(const Vec3& end, std::span<const std::uint32_t> triangles);
 
   enum class Way : std::uint8_t { kFromEnd, kToEnd };
-  // Sets `hits` to those on the way from the end to `other`, or back; of equal ones the lowest triangle first. Jumps
-  // are known where the segment leads from one side of the triangle to the other, through its inside.
+  // Sets `hits` to the hits on the way from the end to `other`, or back, in order; of equal ones the lowest triangle
+  // first. Jumps are known where the segment passes through the inside of the triangle, from one side to the other.
   void find(const Vec3& other, Way way, std::vector<SegmentHit>& hits);
 
  private:

@@ -23,7 +23,7 @@ class NodeSet {
   // Empty.
   explicit NodeSet(const Lattice& lattice);
 
-  // Threads may set different rows at a time; insert() is for one thread.
+  // Threads may set_row() different rows at a time; insert() is for one thread.
 
   [[nodiscard]] const Lattice& lattice() const { return lattice_; }
   [[nodiscard]] std::int64_t count(int axis) const { return lattice_.counts[static_cast<std::size_t>(axis)]; }
@@ -38,7 +38,7 @@ class NodeSet {
   // Sets a row to the nodes where `holds` is 1; elsewhere it is 0. Precondition: holds.size() == count(0).
   void set_row(std::int64_t j, std::int64_t k, std::span<const std::uint8_t> holds);
 
-  // The same nodes of another lattice, of as many.
+  // The same nodes of another lattice with as many nodes along each axis.
   [[nodiscard]] NodeSet on(const Lattice& lattice) const;
 
   // The bits of a row, 64 a word; those behind its end are 0.
@@ -58,7 +58,8 @@ class NodeSet {
     }
   }
 
-  // Those of `others`, of the same lattice, change: in it if they were not, and the other way round.
+  // Takes out the nodes of `others` that are in this set, and adds those that are not. Precondition: of the same
+  // lattice.
   void flip(const NodeSet& others);
 
   [[nodiscard]] bool empty() const;
@@ -72,12 +73,12 @@ class NodeSet {
   std::vector<std::uint64_t> words_;
 };
 
-// The nodes where `rule` holds. Exact. `done`, where given, grows by one per node, and `tally` by what
-// evaluate_sides() tells. The same for any number of threads.
+// The nodes where `rule` holds. Exact. `done`, where given, grows by one per node, and `tally` by what evaluate_sides()
+// counts. Uses the threads that ThreadLimit allows; the same for any number of them.
 [[nodiscard]] NodeSet nodes_inside(const WindingNumberEvaluator& evaluator, const Rule& rule, const Lattice& lattice,
                                    std::atomic<std::uint64_t>* done = nullptr, Tally* tally = nullptr);
 
-// The same of some rows alone: none are found elsewhere. Precondition: rows of `block` are whole.
+// The same for the rows of `block`: no nodes are found elsewhere. Precondition: rows of `block` are whole.
 [[nodiscard]] NodeSet nodes_inside_of(const LatticeBlock& block, const WindingNumberEvaluator& evaluator,
                                       const Rule& rule, const Lattice& lattice,
                                       std::atomic<std::uint64_t>* done = nullptr, Tally* tally = nullptr);

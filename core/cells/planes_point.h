@@ -14,8 +14,8 @@ struct PointOnPlane {
   Vec3 normal;  // of length 1
 };
 
-// The point of all these planes that is nearest to `near`; nothing where they have none in common, up to `tolerance`.
-// Where planes agree but for 1e-5, they are one.
+// The point of all these planes that is nearest to `near`. None where it is farther than `tolerance` from one of them,
+// or there are no planes. Planes whose normals differ by less than 1e-5 count as one.
 [[nodiscard]] std::optional<Vec3> common_point(std::span<const PointOnPlane> planes, const Vec3& near,
                                                double tolerance);
 
@@ -35,7 +35,8 @@ class BarycentricCoordinates {
   // Whether the coordinates of a point are above `margin`.
   [[nodiscard]] bool is_within(const Vec3& from_first, double margin) const;
 
-  // The point whose coordinates are those of `from_first`, none below `margin`.
+  // Moves a point into the tetrahedron: its coordinates are raised to `margin` where they are less, and scaled to add
+  // up to 1.
   [[nodiscard]] Vec3 moved_within(const Vec3& from_first, double margin) const;
 
  private:

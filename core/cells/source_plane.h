@@ -19,11 +19,11 @@ struct SourcePlane {
 // Precondition: `source` is a triangle of `input`.
 [[nodiscard]] SourcePlane source_plane(const TriangleMesh& input, std::int32_t source);
 
-// Whether two planes are one within `off`, as far as `near` tells; whichever way they look.
+// Whether two planes are one within `off`, near the point `near`; whichever way they look.
 [[nodiscard]] bool is_same_plane(const SourcePlane& a, const SourcePlane& b, const Vec3& near, double off);
 
-// The point of two or three planes that is nearest to `near`. Nothing for other numbers of planes, nor where they
-// hardly have a point in common. Precondition: of two planes the angle is known to be large enough.
+// The point of two or three planes that is nearest to `near`. Nothing for fewer or more planes, or where three hardly
+// have a point in common. Precondition: two planes are at an angle that is not too small.
 [[nodiscard]] std::optional<Vec3> meeting_point(std::span<const SourcePlane> planes, const Vec3& near);
 
 }  // namespace raycone

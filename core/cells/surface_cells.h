@@ -36,7 +36,7 @@ struct SurfaceCell {
   }
 };
 
-// From its inside end to its outside end.
+// An edge with one end inside, one outside, and its number among SurfaceCells::edges().
 struct MixedEdge {
   Vec3 inside, outside;
   std::uint32_t number;
@@ -48,7 +48,8 @@ struct MixedEdge {
 // time. Precondition: !nodes.reaches_border().
 [[nodiscard]] std::uint64_t mixed_cells(const NodeSet& nodes);
 
-// Calls visit(node) for the lowest node of each of them, in the order of their numbers. Likewise.
+// Calls visit(node) for the lowest node of each such cell, in the order of their numbers. Precondition:
+// !nodes.reaches_border().
 void for_each_mixed_cell(const NodeSet& nodes, const std::function<void(const NodeSet::Node&)>& visit);
 
 // All cells with nodes of both kinds, in the order of their nodes, and the mixed edges of the Kuhn subdivision: those
@@ -94,7 +95,7 @@ class SurfaceCells {
   [[nodiscard]] std::uint32_t row_end(std::int64_t j, std::int64_t k) const { return rows_[row_number(j, k) + 1]; }
   [[nodiscard]] std::uint32_t first_from(std::uint32_t begin, std::uint32_t end, std::int64_t x) const;
 
-  // Calls visit(cell) for each cell that is no farther from a point along any axis than a part of its side.
+  // Calls visit(place) for each cell that is no farther from a point along any axis than `part` of a voxel.
   template <class Visit>
   void for_each_near(const Vec3& p, double part, const Visit& visit) const {
     std::array<std::int64_t, 3> low, high;

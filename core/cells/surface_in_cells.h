@@ -17,7 +17,7 @@ struct SurfaceInCells {
   double tolerance;  // plane_tolerance(), world units
   double margin;     // a fraction of an edge, or of barycentric coordinates of a face or a cell
 
-  // That where edges are short, and where they are long, world units.
+  // The margin as a length, world units: along the shortest spacing, and along the longest.
   [[nodiscard]] double least_margin() const { return margin * cells.lattice().least_spacing(); }
   [[nodiscard]] double largest_margin() const { return margin * cells.lattice().largest_spacing(); }
 };

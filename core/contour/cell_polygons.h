@@ -15,7 +15,7 @@
 
 namespace raycone {
 
-// The places of the cells whose lowest nodes are corners of a cell; of one cell after the other.
+// Which cells have the corners of a cell as their lowest nodes; for one cell after the other.
 class CornerCells {
  public:
   explicit CornerCells(const SurfaceCells& cells) : cells_(cells) {}
@@ -48,21 +48,21 @@ struct PlanePolygon {
   void add(std::uint32_t corner) { corners[size++] = corner; }
 };
 
-// The point of the diagonal of a face of a cell, in line with what the surface has before and behind it there.
+// The edge point on the diagonal of a square between two cells.
 struct DiagonalPoint {
   std::uint32_t edge;
   bool is_above;   // whether the cell is above the face, along the axis across it
-  bool is_inline;  // the same for both cells at the face
+  bool is_inline;  // in line with the points before and behind it; so for both cells
 };
 
-// Where all points of a cell's surface are in the planes of their triangles, and these meet in straight lines through
-// the cell, or in one point of the mesh in it: then the surface in the cell is some polygons in these planes. They
-// share sides within the cell, and their other sides are the surface's lines on the cell's faces.
+// Says where the surface in a cell is a few polygons: all its points there are in the planes of their triangles, and
+// the planes meet in straight lines through the cell, or in one point of the mesh in it. The polygons share sides
+// within the cell; their other sides are the surface's lines on the cell's faces.
 class CellPolygons {
  public:
   static constexpr std::uint32_t kApex = 0xFFFFFFFF;  // the number of the point where planes meet in the cell
 
-  // What `surface` refers to and the others must outlive this.
+  // All that is given here, and what `surface` refers to, must outlive this.
   CellPolygons(const SurfaceInCells& surface, const FacePoints& face_points, CreasesHere& creases, CornerCells& corners)
       : cells_(surface.cells),
         edge_points_(surface.edge_points),
@@ -71,16 +71,16 @@ class CellPolygons {
         corners_(corners),
         unit_(surface.least_margin()) {}
 
-  // Whether the surface is such polygons in a cell, which `creases` and `corners` have entered.
+  // Whether the surface in a cell is such polygons. Precondition: `creases` and `corners` have entered the cell.
   [[nodiscard]] bool find(std::uint32_t cell);
 
-  // After that, where it is:
+  // These are about the last find(), where it returned true.
   [[nodiscard]] std::span<const PlanePolygon> polygons() const { return std::span(polygons_).first(count_); }
   [[nodiscard]] const Vec3& apex() const { return apex_; }
   [[nodiscard]] std::span<const DiagonalPoint> diagonals() const {
     return std::span(diagonals_).first(diagonal_count_);
   }
-  // Whether planes meet there.
+  // Whether the loop has face points, so that planes meet in the cell.
   [[nodiscard]] bool has_face_points() const { return face_count_ > 0; }
   // The face points of the cell that no polygon has.
   [[nodiscard]] const std::vector<std::uint32_t>& spare_points() const { return spare_points_; }
@@ -145,12 +145,12 @@ class CellPolygons {
   std::vector<std::uint32_t> spare_points_;
 };
 
-// Of each cell at a face with several points, whether the surface is polygons there: 1; 0 for all others. The same for
-// any number of threads.
+// Of each cell: 1 where it is at a face with sections and the surface is polygons there, else 0. Uses the threads that
+// ThreadLimit allows; the same for any number of them.
 [[nodiscard]] std::vector<std::uint8_t> polygons_at_sections(const SurfaceInCells& surface,
                                                              const FacePoints& face_points);
 
-// A polygon cut into triangles at one corner, of which the worst is best: the number of that corner.
+// The corner at which to cut a polygon into triangles, so that the worst of them is as good as can be.
 [[nodiscard]] std::size_t best_fan(std::span<const Vec3> polygon);
 
 }  // namespace raycone

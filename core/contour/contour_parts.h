@@ -16,14 +16,14 @@ struct ContourPart {
   std::vector<Triangle> triangles;
   std::vector<std::int32_t> sources;
   std::vector<Vec3> apexes;
-  std::vector<std::uint64_t> tetrahedra;  // of them
+  std::vector<std::uint64_t> tetrahedra;  // of the apexes: as ContouredSurface::tetrahedra
   std::vector<std::uint32_t> polygon_corners;
   struct Polygon {
     std::int32_t source;
     std::uint32_t size;
   };
   std::vector<Polygon> polygons;
-  std::uint64_t full_triangles = 0;  // that would be in their place
+  std::uint64_t full_triangles = 0;  // that tetrahedra would have in place of the polygons
 };
 inline constexpr std::uint32_t kFirstApex = 0x80000000;
 
@@ -37,7 +37,8 @@ struct SparePoints {
   // Of edges, when these are settled, and of face points: whether they are spare.
   std::vector<std::uint8_t> edges, faces;
 
-  // Both cells at a diagonal must be of polygons.
+  // Makes `edges` of `within`, `above` and `below`: a point on a diagonal is spare where the polygons of both cells at
+  // it can do without. Call it once.
   void settle_edges() {
     edges = std::exchange(within, {});
     for (std::size_t n = 0; n < edges.size(); ++n)
@@ -50,12 +51,12 @@ struct SparePoints {
 void check_point_numbers(std::size_t points);
 
 // Cuts the polygons of all parts into triangles, without the points that are spare. Returns how many triangles in
-// planes there are less than tetrahedra would have.
+// planes that saves, as against tetrahedra.
 std::uint64_t cut_polygons(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
                            std::span<const Vec3> face_points, const SparePoints& spare);
 
-// One surface of all parts, which it empties. Its vertices are edge points, face points and apexes, in this order, but
-// for those that are `spare`; null where none is.
+// Makes one surface of all parts, which it empties. Its vertices are edge points, face points and apexes, in this
+// order, but for those that are `spare`; null where none is. Throws std::length_error as contour() does.
 [[nodiscard]] ContouredSurface joined(std::vector<ContourPart>& parts, std::span<const EdgePoint> edge_points,
                                       std::span<const Vec3> face_points, const SparePoints* spare);
 

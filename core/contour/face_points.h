@@ -14,7 +14,7 @@
 
 namespace raycone {
 
-// A face of a cell, as in kuhn::kFaces, in one number, which increases with the cell and then with the face.
+// A face of a cell, as in kuhn::kFaces, as one number, which increases with the cell and then with the face.
 inline constexpr std::uint64_t kFacesPerCell = 16;  // a power of two, more than a cell has
 [[nodiscard]] constexpr std::uint64_t number_of_face(std::uint32_t cell, std::size_t face) {
   return kFacesPerCell * cell + face;
@@ -24,7 +24,7 @@ inline constexpr std::uint64_t kFacesPerCell = 16;  // a power of two, more than
 }
 [[nodiscard]] constexpr std::size_t face_in_cell(std::uint64_t number) { return number % kFacesPerCell; }
 
-// The cells at a face with nodes of both kinds: it is between two, or within one, which comes twice then.
+// The two cells at a face with nodes of both kinds, by their places. Where the face is within a cell, twice that cell.
 [[nodiscard]] std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint32_t cell,
                                                          std::size_t face);
 
@@ -33,20 +33,23 @@ enum class PointsOfFaces : std::uint8_t {
   kSections,  // of faces between cells, not of those within one
 };
 
-// Where the planes at a mixed face's two points disagree, or just one of these is in a hole: a point of a crease in the
-// face, if there is one; that where the planes meet, else the one farthest from the straight line.
+// A point of a crease in a face with nodes of both kinds, where the planes at the face's two edge points disagree, or
+// one of the points is in a hole: the point where the planes meet, if a crease is there; else the point of a crease
+// that is farthest from the straight line between the two. None elsewhere. Precondition: `creases` has entered the
+// cell.
 [[nodiscard]] std::optional<Vec3> face_point(const SurfaceInCells& surface, std::uint32_t cell, std::size_t face,
                                              CreasesHere& creases);
 
 class FacePoints {
  public:
-  // What face_point() finds. With sections, where planes do not meet: all points by which the mesh leads from the one
-  // to the other, if these are several, and go ahead all the way; and where planes meet on fine creases, or are one but
-  // for what single precision rounds, points of these. Points are kept inside the face by the margin. They depend on
-  // the face, its two points and the mesh alone, so that both its cells agree.
+  // The points that face_point() finds. With kSections, faces between cells may have other points. Where the planes do
+  // not meet: all points of creases by which the mesh leads from one edge point to the other, if they go ahead all the
+  // way; else the one that face_point() finds. Where planes meet on fine creases, or are one but for what single
+  // precision rounds: points of these. Points are kept inside the face by the margin. They depend on the face, its two
+  // edge points and the mesh alone, so that both its cells agree. Uses the threads that ThreadLimit allows.
   explicit FacePoints(const SurfaceInCells& surface, PointsOfFaces kind = PointsOfFaces::kOne);
   FacePoints() = default;
-  // These points, of faces with these numbers, each once, increasing.
+  // One point of each of these faces (number_of_face()), which increase.
   FacePoints(std::vector<std::uint64_t> faces, std::vector<Vec3> positions);
 
   [[nodiscard]] PointsOfFaces kind() const { return kind_; }
@@ -58,19 +61,20 @@ class FacePoints {
   struct Range {
     std::uint32_t first = 0, count = 0;
   };
-  // Those of a face of the cell, as in kuhn::kFaces, in order: from the point of the edge that is less by the numbers
-  // of its corners, lower one first, to that of the other. Thread-safe.
+  // The points of a face of the cell, as in kuhn::kFaces, in order: from the edge point on the edge that is less by the
+  // numbers of its corners, lower one first, to the other edge point. Thread-safe.
   [[nodiscard]] Range find(std::uint32_t cell, std::size_t face) const;
-  // What the surface is of between a point and the next one, of the same face.
+  // The plane that the surface is in between a point and the next one of the same face. Precondition: there is a next
+  // one.
   [[nodiscard]] const EdgePoint& piece_behind(std::uint32_t point) const;
 
-  // The faces with points that face_point() does not find, in increasing order.
+  // The faces with points that face_point() does not find, by number_of_face(), increasing.
   [[nodiscard]] const std::vector<std::uint64_t>& section_faces() const { return sections_; }
-  // Leaves these only where that pays: where one of the face's cells is in `cells_of_polygons`, which has a 1
-  // for each such cell. The others have the one that face_point() finds.
+  // Leaves the points of such faces only where that pays: where one of the face's cells has a 1 in `cells_of_polygons`
+  // (by place). The other faces get the point that face_point() finds.
   void keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceInCells& surface);
 
-  // All but those of faces that have one of these numbers.
+  // These, but for points of faces that have a point `dropped` (by number).
   [[nodiscard]] FacePoints without(const std::vector<bool>& dropped) const;
 
  private:

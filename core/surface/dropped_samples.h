@@ -17,46 +17,47 @@
 
 namespace raycone {
 
-// The centres of parts of triangles, all about as large, and what area each of them stands for.
+// The centres of parts of triangles, all about as large, and the area that each stands for.
 struct AreaSamples {
   std::vector<Vec3> points;
   std::vector<double> areas;  // in squares of a step
   std::vector<std::uint32_t> triangles;
 };
 
-// Adds those of a triangle, no farther apart than a step; some 32 000 at most.
+// Adds the samples of a triangle, no farther apart than `step` (world units); some 32 000 at most.
 void add_samples(AreaSamples& samples, const TriangleMesh& mesh, std::uint32_t triangle, double step);
 
-// What the faces of a surface are.
+// Whether the faces of a surface are the mesh's own, or a contour's.
 enum class SurfaceFaces : std::uint8_t { kOfMesh, kOfContour };
 
-// A point of a mesh that is farther than this from a surface made of it, in world units, is dropped: of a surface that
-// has the mesh's own faces, more than these are moved where they are cut or merged; of a contour, what it cuts off
-// edges at most, as a rule. Without thickness, and not simplified. `precision`: of the surface's vertices.
+// The distance from a surface beyond which a point of its mesh counts as dropped, world units. Where the surface has
+// the mesh's own faces, it is more than they move where they are cut or merged; of a contour, as a rule, more than what
+// it cuts off at edges. For a surface without thickness, not simplified. `precision`: of the surface's vertices.
 [[nodiscard]] double farthest_kept(const TriangleMesh& mesh, const Lattice& lattice, SurfaceFaces faces,
                                    CoordinatePrecision precision);
 
-// Finds the points that are dropped: farther from the surface than `farthest`. Where the set has no thickness, also
-// those that are not on the surface, of components of the mesh that no face of the surface is of.
+// Finds the points that are dropped: those farther from the surface than `farthest`. Where the set has no thickness,
+// also those off the surface that are of components of the mesh of which the surface has no face. Not thread-safe.
 class DroppedSamples {
  public:
-  // Of a surface between `inside`, which has been made so much thicker, and the other nodes. Both must stay.
-  // `farthest`: farthest_kept(), and by how much the set is thicker, and the surface may have moved. `held`: of each
-  // triangle of the mesh, whether no point of it is dropped, as is known; none may be known of.
+  // For the surface between `inside` and the other nodes, after the set was thickened by `thickness` (world units).
+  // `surface` and `inside` must outlive this. `farthest`: farthest_kept(), plus the thickness, plus what the surface
+  // may have moved by. `held`: of each triangle of the mesh, whether it is known that no point of it is dropped; empty:
+  // not known of any.
   DroppedSamples(const SurfaceMesh& surface, const NodeSet& inside, double thickness, double farthest,
                  std::vector<bool> held);
 
   [[nodiscard]] const NodeSet& inside() const { return inside_; }
   [[nodiscard]] double thickness() const { return thickness_; }  // world units
-  [[nodiscard]] double step() const { return step_; }            // of points, half a cell's diagonal
+  [[nodiscard]] double step() const { return step_; }            // between points: half a cell's diagonal, world units
 
-  // Whether no point at all is dropped, as is known.
+  // Whether it is known that no point at all is dropped.
   [[nodiscard]] bool holds_all() const;
 
   using Visit = std::function<void(const AreaSamples& samples, const std::vector<bool>& dropped)>;
-  // Calls visit(samples, is_dropped) for the points of some triangles of the mesh at a time, in their order; one point
-  // stands for all of a triangle that is held. The same for any number of threads. Builds a search structure for the
-  // surface when that is first needed. Sooner the second time. Precondition: it is the same mesh each time.
+  // Calls visit(samples, is_dropped) for the samples of some triangles of the mesh at a time, in their order. One
+  // sample stands for a triangle that is held. Builds a search structure for the surface when it is first needed;
+  // faster the second time. The same for any number of threads. Precondition: it is the same mesh each time.
   void for_each(const TriangleMesh& mesh, const Visit& visit);
 
  private:

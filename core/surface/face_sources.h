@@ -20,19 +20,21 @@ namespace raycone {
 
 class SourceSettler {
  public:
-  // All must stay. `distance`: from `input`. `off`: how far from the plane of its source a face may be, world units.
+  // All must outlive this. `distance`: from `input`. `off`: how far corners of a face may be from the plane of its
+  // source, world units.
   SourceSettler(const TriangleMesh& input, const TriangleNormals& normals, const DistanceEvaluator& distance,
                 double off);
 
-  // Gives faces another source whose own cannot be theirs: that are more than 15 degrees or `off` from its plane. They
-  // get the triangle that is nearest to their middle, of several the first; or none, if that one cannot be theirs
-  // either and a face without a source is beside them, in line with them. A face has the source of one of its corners
-  // at first; where a lattice edge meets the mesh on an edge, that may be the triangle on the other side. Faces without
-  // a source keep none. The same for any number of threads. Precondition: sources are triangles of `input`, or kHole.
+  // Gives a face another source where its own cannot be its source: where the face is turned by more than 15 degrees
+  // against the triangle's plane, or has a corner farther than `off` from it. The face gets the triangle that is
+  // nearest to its middle, of several the first. Where that one cannot be its source either, and a face without a
+  // source is beside it and in line with it, it gets none. At first a face has the source of one of its corners; where
+  // a lattice edge meets the mesh on an edge, that may be the triangle on the other side. Faces without a source keep
+  // none. The same for any number of threads. Precondition: sources are triangles of `input`, or kHole.
   void settle(SurfaceMesh& surface) const;
 
-  // Takes theirs from faces with a corner that is farther from the mesh than `most`, world units: since vertices have
-  // gone, they reach into what closes a hole. The same for any number of threads.
+  // Takes the source from faces with a corner farther from the mesh than `most`, world units: since vertices have gone,
+  // they reach into what closes a hole. The same for any number of threads.
   void forget_far_sources(SurfaceMesh& surface, double most) const;
 
  private:

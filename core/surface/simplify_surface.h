@@ -7,8 +7,9 @@
 
 namespace raycone {
 
-// checked_simplify() with pulls of `most` (world units) at most, so that the surface moves by `options.simplify`. Notes
-// in `made` what came of it. Faces get their sources anew by `settler`. Needs DefaultFloatingPoint.
+// Runs checked_simplify() with pulls of at most `most` (world units), so that the surface moves by at most
+// `options.simplify`. Sets `made.simplified` and `made.bound_too_small` (where `most` is not positive). Faces get their
+// sources anew by `settler`. Needs DefaultFloatingPoint.
 void simplify_surface(FinishedSurface& made, const NodeSet& inside, double most, const SurfaceOptions& options,
                       const SourceSettler& settler);
 

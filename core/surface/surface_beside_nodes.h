@@ -18,23 +18,24 @@
 
 namespace raycone {
 
-// Whether most of a surface of `input` is in the planes of its sources, but for `off`, as that of CAD parts is.
+// Whether three quarters of a surface's area, or more, is in the planes of its sources within `off` (world units), as
+// that of CAD parts is.
 [[nodiscard]] bool is_of_planes(const SurfaceMesh& surface, const TriangleMesh& input, double off);
 
 // Lengths are world units.
 struct BesideNodesLimits {
   double to_corners = 0.0;  // how far points may be moved to corners, and into level planes, of the mesh
   double off = 0.0;         // how far points of the lattice's edges may be from the surface
-  std::size_t faces = 0;    // with as many a surface is of no use
+  std::size_t faces = 0;    // a surface with as many is of no use
   CoordinatePrecision precision = CoordinatePrecision::kDouble;
 };
 
-// The merged surface of a lattice, where there is one without faults.
+// Makes the merged surface of a lattice, if there is one without faults.
 using MergedSurface = std::function<std::optional<SurfaceMesh>(const Lattice&)>;
 
-// A surface by way of moved lattices: of `input`, without faults (faults_of()) as the surface of `inside`, with all of
-// `points` on it, which are those of the lattice's edges. The first that there is of six; none if that has too many
-// faces, or a point is off it.
+// Tries up to six moved lattices. Returns the first surface of `input` that has no faults (faults_of()) as the surface
+// of `inside`, and has `points`, those of the lattice's edges, on it. None where a surface has as many faces as
+// `limits.faces`, or a point is off it, or no lattice will do.
 [[nodiscard]] std::optional<SurfaceMesh> surface_beside_nodes(const TriangleMesh& input, const NodeSet& inside,
                                                               std::span<const Vec3> points,
                                                               const BesideNodesLimits& limits,

@@ -9,15 +9,15 @@
 
 namespace raycone {
 
-// Whether products of four lengths and more could over- or underflow. Not where vertices are floats.
+// Whether products of four lengths and more could over- or underflow. False where vertices are floats.
 [[nodiscard]] bool is_out_of_scale(const Lattice& lattice, const SurfaceOptions& options);
 
 // Whether products of eight lengths, more than there are anywhere, could overflow.
 [[nodiscard]] bool is_far_too_large(const Lattice& lattice);
 
-// What `make` makes of the input in another scale, by a power of two, in which coordinates are near 1; back in this
-// one. Its evaluators are new ones, made with the accuracies of these. None where it makes none, or where another scale
-// costs a number bits.
+// Scales the input by a power of two, so that coordinates are near 1, calls `make`, and scales back what that returns.
+// The evaluators are new ones, made with the accuracies of those given. None where `make` returns none, or where
+// scaling costs a number bits.
 [[nodiscard]] std::optional<FinishedSurface> made_in_scale(
     const SurfaceInput& input, const std::function<std::optional<FinishedSurface>(const SurfaceInput&)>& make);
 

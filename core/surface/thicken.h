@@ -14,8 +14,8 @@ namespace raycone {
 // Adds the nodes that are no farther than `thickness` (world units, positive) from the mesh.
 void insert_near(NodeSet& nodes, const DistanceEvaluator& distance, double thickness);
 
-// As edge_points(), for the set where the rule holds or that is no farther than `thickness` from the mesh. Where the
-// distance ends it, `source` is the nearest triangle.
+// As edge_points(), for the set where the rule holds or that is no farther than `thickness` (world units) from the
+// mesh. Where the distance ends the set, `source` is the nearest triangle.
 [[nodiscard]] std::vector<EdgePoint> thick_edge_points(const RuleAlong& rule, const DistanceEvaluator& distance,
                                                        double thickness, const SurfaceCells& cells, double margin);
 

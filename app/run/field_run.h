@@ -21,37 +21,39 @@ namespace raycone {
 
 class FieldRun {
  public:
-  // Prepares what the fields need, but for what only points need. `run` and `field` must outlive this. `samples`: about
-  // how many there are. `points`: Accuracy::points.
+  // Prepares what the fields need, but for what only points need. `run` and `field` must outlive this. `samples`: how
+  // many there will be, about. `points`: Accuracy::points.
   FieldRun(MeshRun& run, TriangleMesh mesh, const FieldOptions& field, double samples, double points = 0.0);
 
-  // The closed surface that solid distances are to: needed before evaluate() where they are wanted.
+  // Sets the closed surface that solid distances are to. Call it before evaluate() where they are wanted.
   void set_solid(TriangleMesh surface);
 
-  // Builds the search structures of points.
+  // Builds the search structures that points need.
   void prepare_points();
 
-  // Lattices along the axes have blocks() in place of values(). Precondition: may_use_blocks().
+  // From here on lattices have blocks() in place of values(). Precondition: may_use_blocks(), and lattices along the
+  // axes.
   void use_blocks() { samples_.use_blocks(); }
   [[nodiscard]] bool uses_blocks() { return samples_.distance_blocks() != nullptr; }
   [[nodiscard]] SignedBlocks blocks() { return {*samples_.distance_blocks(), samples_.sides()}; }
 
-  // Evaluates a block or some finite points: values() are theirs then. Those that verification wants are kept.
+  // Evaluates a block, or some finite points; values() are theirs then. Samples to be verified are kept. `done`, where
+  // given, grows by one per sample.
   void evaluate(const PlacedLattice& lattice, const LatticeBlock& block, std::atomic<std::uint64_t>* done);
   void evaluate(std::span<const Vec3> points, std::atomic<std::uint64_t>* done);
   [[nodiscard]] std::span<const FieldValues> values() const { return samples_.fields(); }
-  // To be set, where they are wanted.
+  // Labels of the last samples, for the caller to set where they are wanted.
   [[nodiscard]] std::span<std::int32_t> labels() { return samples_.labels(); }
-  // Sets them for the block that was evaluated last. Where nothing else is asked for, shown() is 1 where there is a
-  // label, else 0.
+  // Sets the labels of the block that was evaluated last. Where nothing else is asked for, shown() is 1 where there is
+  // a label, else 0.
   void take_labels(const LabelVolume& volume, const LatticeBlock& block);
   [[nodiscard]] std::vector<double> shown() const { return samples_.shown(); }
 
   // Whether a rule was asked for of the mesh as a whole, and held for no sample.
   [[nodiscard]] bool found_nothing_inside() const { return tells_inside() && !found_inside_; }
 
-  // Tells the report what the values took and, where it is asked for, verifies them. `band_width`: where distances are
-  // cut off, world units.
+  // Tells the report what evaluating took and, where asked for, verifies. `band_width`: the distance at which values
+  // are cut off, world units. Throws VerificationError.
   void finish(double band_width);
 
  private:
@@ -72,21 +74,21 @@ class FieldRun {
   double largest_bound_ = 0.0;  // of diagnostics
 };
 
-// Bytes that signed distances to so many triangles take at least, where they are wanted: their search structure.
+// The least bytes that signed distances to so many triangles take, for their search structure; 0 where none are wanted.
 [[nodiscard]] double memory_of_distances(std::uint64_t triangles, const FieldOptions& field);
 
-// Refuses what does not fit within `limits`, before any work on it: the search structures of the report's mesh for so
-// many points. Throws LimitError.
+// Refuses search structures that do not fit within `limits`, before any work: those of the report's mesh for so many
+// points. Throws LimitError.
 void check_points_memory(const RunReport& report, const FieldOptions& field, double points, const RunLimits& limits);
 
-// The same of evaluators of so many parts, as labels of points have them.
+// The same for the evaluators of so many parts, which labels of points keep all at once.
 void check_parts_memory(const MeshOptions& options, std::size_t parts, const RunLimits& limits);
 
-// The same of what verification keeps of a run of `samples`, as far as they are known.
+// The same for what verification keeps of a run of so many samples, as far as their number is known.
 void check_verify_memory(const MeshOptions& options, const FieldOptions& field, double samples,
                          const RunLimits& limits);
 
-// What the output will hold and say about itself; `report` is complete as far as mesh, edges and lattice go.
+// What the output will hold and say about itself. `report` is complete as far as mesh, edges and lattice go.
 [[nodiscard]] OutputDescription description_of(const RunReport& report, const FieldOptions& field,
                                                const FieldEncoding& encoding);
 

@@ -20,9 +20,9 @@ class InfoListing {
   };
   explicit InfoListing(const Layout& layout) : layout_(layout) {}
 
-  // What is to be printed for the next mesh, and at the end.
+  // What to print for the next file, and at the end.
   [[nodiscard]] std::string entry(const MeshInfo& info, const CostedLattices& costed, int threads);
-  // Of a file of values, which has no row in a table.
+  // The same for a file of values, which has no row in a table.
   [[nodiscard]] std::string entry(const VolumeInfo& info);
   [[nodiscard]] std::string end();
 

@@ -16,10 +16,11 @@
 
 namespace raycone {
 
-// The parts of a run, made ready one after the other. The report learns of them, their user of what is wrong with them.
+// The parts of a run, made ready one after the other. Tells the report of them, and warns the user of their flaws.
 class LabelledParts {
  public:
-  // Reads the meshes. What is given here must outlive this.
+  // Reads the meshes. All that is given here but `written` must outlive this. Throws as MeshParts does, and as
+  // MeshRun::check_files_read().
   LabelledParts(MeshRun& run, const MeshOptions& mesh, const FieldOptions& field,
                 const std::vector<WrittenFile>& written, WholeMesh whole);
 
@@ -28,16 +29,16 @@ class LabelledParts {
   [[nodiscard]] const TriangleMesh& whole() const { return parts_.whole(); }
   [[nodiscard]] PartPriority priority() const { return mesh_.parts.priority; }
 
-  // The next one, from the first to the last.
+  // The next part, from the first to the last; call it size() times at most.
   [[nodiscard]] MeshToEvaluate next();
-  // To be called of a part that has no samples inside, though it should have some; before next().
+  // Call it, before next(), for a part that has no samples inside, though it should have some.
   void note_empty();
-  // What was spent on a part.
+  // Adds to the report what evaluating a part took.
   void spent(const FieldEvaluator& evaluator);
-  // What was counted at some of its samples.
+  // Adds what was counted at some samples of a part.
   void count(const Tally& tally) { tally_ += tally; }
 
-  // When all parts have been evaluated. `samples`: of each label, from 0.
+  // Call it when all parts have been evaluated. `samples`: how many have each label, from 0.
   void finish(std::span<const std::uint64_t> samples);
 
  private:

@@ -18,20 +18,22 @@
 
 namespace raycone {
 
-// The labels of all samples of `lattice`. Reports what they took, and verifies them where that is asked for. Throws
-// VerificationError, and what reading throws. Precondition: there is memory for a LabelVolume.
+// The labels of all samples of `lattice`. Tells the report what they took, and verifies them where asked for. Throws
+// VerificationError, and what reading parts throws. Precondition: there is memory for a LabelVolume.
 [[nodiscard]] LabelVolume label_lattice(LabelledParts& parts, const PlacedLattice& lattice, const FieldOptions& field,
                                         MeshRun& run);
 
 // The labels of points, batch by batch.
 class PointLabels {
  public:
-  // Makes all parts ready. `samples`: about how many points there are. What is given here must outlive this.
+  // Makes all parts ready, and keeps them. `samples`: how many points there will be, about. All that is given here must
+  // outlive this. Throws what reading parts throws.
   PointLabels(LabelledParts& parts, const FieldOptions& field, double samples, MeshRun& run);
 
+  // Sets the label of each point; 0 where it is in no part. Precondition: as many labels as points.
   void evaluate(std::span<const Vec3> points, std::span<std::int32_t> labels);
 
-  // Reports what they took, and verifies them where that is asked for.
+  // Call it last. Tells the report what labels took, and verifies them where asked for. Throws VerificationError.
   void finish();
 
  private:

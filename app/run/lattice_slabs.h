@@ -39,18 +39,19 @@ class Slabs {
 
 // In what follows, the report is complete as far as mesh, edges and lattice go.
 
-// Refuses what the format cannot hold and what cannot fit, before any work on it.
+// Makes the writer. Before that, refuses what the format cannot hold and what does not fit in memory or on disk. Throws
+// OutputError, LimitError.
 [[nodiscard]] std::unique_ptr<LatticeWriter> open_lattice_writer(const LatticeCommand& command, MeshRun& run);
 
 // Whether the writer is handed distances in blocks.
 [[nodiscard]] bool takes_blocks(const LatticeCommand& command, const LatticeWriter& writer,
                                 const PlacedLattice& lattice);
 
-// Refuses lattices of which not even the smallest slab fits beside what is in memory.
+// Refuses a lattice if not even its smallest slab fits beside what is in memory. Throws LimitError.
 void check_slab_memory(const LatticeCommand& command, const LatticeWriter& writer, const RunReport& report,
                        const RunLimits& limits);
 
-// As memory allows, of the report's lattice, which must outlive them.
+// The slabs of the report's lattice, which must outlive them; as large as memory allows.
 [[nodiscard]] Slabs slabs_of(const LatticeCommand& command, const LatticeWriter& writer, const RunReport& report,
                              const RunLimits& limits);
 

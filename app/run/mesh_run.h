@@ -32,48 +32,49 @@ namespace raycone {
 
 class MeshRun {
  public:
-  // Opens the output, and the report and the list of files read, where wanted. `inputs`: the files that the command
-  // names to be read. What else is given here must outlive this. Throws OutputError.
+  // Opens the output and, where asked for, the report and the list of files read. `inputs`: the files that the command
+  // names to be read. All that is given here but `inputs` must outlive this. Throws OutputError.
   MeshRun(const MeshOptions& mesh, const OutputFiles& output, const RunOptions& options,
           const std::vector<std::string>& inputs, const RunLimits& limits);
   MeshRun(const MeshRun&) = delete;  // total_ refers to the report
   MeshRun& operator=(const MeshRun&) = delete;
 
-  // The mesh to evaluate; the report says where it is from, and has the warnings about it. Throws InputError,
-  // LimitError, and what check_files_read() throws.
+  // Reads the mesh and makes it ready to be evaluated. The report says where it is from, and has the warnings about it.
+  // Throws InputError, LimitError, and what check_files_read() throws.
   [[nodiscard]] TriangleMesh load_mesh(const std::vector<WrittenFile>& written);
 
-  // The same of a mesh that has been read already.
+  // The same for a mesh that has been read already.
   [[nodiscard]] TriangleMesh prepare(TriangleMesh as_read);
 
-  // To be called when the report knows which files meshes refer to. Throws ReplacesFileError where one of `written`
-  // would replace one of them, OutputError where the list of files read cannot name one.
+  // Call it when report.files_read is complete, which is when it is known which files meshes refer to. Throws
+  // ReplacesFileError where one of `written` would replace one of these files, OutputError where the list of files read
+  // cannot name one.
   void check_files_read(const std::vector<WrittenFile>& written) const;
 
-  // exterior_edges() of that mesh, once.
+  // The exterior_edges() of that mesh. Call it once.
   [[nodiscard]] std::vector<ExteriorEdge> take_edges() { return std::move(edges_); }
 
   // The place among the faces of the file of a face of that mesh.
   [[nodiscard]] std::uint32_t place_of(std::uint32_t face) const { return places_.empty() ? face : places_[face]; }
 
-  // Prints what the report has by now and was not printed yet; throws InputError with --strict.
+  // Prints the report's warnings that were not printed yet. Throws StrictWarning with --strict if there are any.
   void print_warnings();
 
-  // A warning after that: printed at once; throws InputError with --strict.
+  // Adds a warning to the report after that, and prints it at once. Throws StrictWarning with --strict.
   void warn(const Warning& warning);
-  // Likewise, about a mesh that need not be the only one.
+  // The same for a mesh that need not be the only one.
   void warn_about(const std::string& mesh, const std::vector<Warning>& warnings);
-  // Likewise, about a file of points: with --strict no error, which is for meshes.
+  // The same for a file of points, but without an error: --strict is about meshes.
   void warn_of_points(const std::string& points, const std::vector<Warning>& warnings);
 
-  // From here on progress is shown, where it is wanted. `total` samples, where known. Returns the count of those done,
-  // to be increased by the work.
+  // Shows progress from here on, where it is wanted. `total`: samples, where known. Returns the count of samples done,
+  // which the work increases; valid while this lives.
   [[nodiscard]] std::atomic<std::uint64_t>* start_progress(std::optional<std::uint64_t> total);
 
-  // Progress shows this instead, which must stay valid; nullptr: samples again.
+  // Shows `stage`, which must stay valid, in place of samples; with nullptr samples again.
   void set_stage(const char* stage);
 
-  // Everything is written: the report is complete, and all files appear. Throws OutputError.
+  // Call it when everything is written: completes the report, and makes all files appear. Throws OutputError.
   [[nodiscard]] RunReport finish();
 
   [[nodiscard]] const RunLimits& limits() const { return limits_; }

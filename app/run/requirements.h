@@ -21,7 +21,7 @@ struct FoundIntersections {
 
 // The requirements that the welded mesh does not meet, each with how often and where: "closed: 3 exterior edges, the
 // first from (0, 0, 0) to (1, 0, 0) of face 0; embedded: ...". Empty where it meets all. Faces count from 0, after
-// polygons are cut to triangles.
+// polygons are cut into triangles.
 [[nodiscard]] std::string unmet_requirements(const std::vector<Requirement>& required, const TriangleMesh& mesh,
                                              const MeshStatistics& statistics, const MeshDefects& defects,
                                              const FoundIntersections& intersections);

@@ -11,7 +11,7 @@
 
 namespace raycone {
 
-// Told of each slab, in turn, with its samples as FieldSamples::shown() has them: x fastest, then y, then z.
+// Called for each slab, in turn, with its samples as FieldSamples::shown() has them: x fastest, then y, then z.
 using SlabObserver = std::function<void(const PlacedLattice&, const LatticeBlock&, std::span<const double>)>;
 
 // Evaluates and writes the lattice within `limits`; the output is complete when this returns. Warnings about the mesh

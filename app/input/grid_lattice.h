@@ -10,8 +10,8 @@ namespace raycone {
 // none.
 [[nodiscard]] PlacedLattice lattice_of_grid(const GridReference& grid);
 
-// The same samples along the axes of the world. Throws UsageError, which begins with `purpose`, where the lattice's
-// axes are none of these.
+// The same samples as a lattice along the axes of the world. Throws UsageError where the lattice's axes are not the
+// world's; its text begins with `purpose`.
 [[nodiscard]] Lattice world_lattice_of_grid(const GridReference& grid, const char* purpose);
 
 }  // namespace raycone

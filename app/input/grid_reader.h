@@ -13,17 +13,16 @@ namespace raycone {
 // The command that makes a process a reader of one grid; it is no part of the command line that users see.
 inline constexpr const char* kGridReaderCommand = "grid-reader";
 
-// What such a process does: reads what `words` tell, and writes what became of it. They are the number of a descriptor
-// to write to (OpenVDB prints warnings to the standard ones), "lattice" or "facts", the path and the grid's name.
+// What such a process does: reads a file and writes the result, or what went wrong. `words`: the number of a descriptor
+// to write to (OpenVDB prints warnings to the standard ones), "lattice" or "facts", the path, and the grid's name.
 [[nodiscard]] ExitCode run_grid_reader(const std::vector<std::string>& words);
 
-// read_vdb_lattice() of io/vdb/read_vdb.h, by this executable started anew, so that no thread of this process is
-// missed. The other process says nothing, leaves no core file, and ends with this one at the latest. A crash is an
-// InputError, too. Throws std::bad_alloc where the other one had no memory, and LimitError where there can be no other
-// process.
+// As read_vdb_lattice() (io/vdb/read_vdb.h), in a new process of this executable: a fork would lack this process's
+// threads. The new process prints nothing, leaves no core file, and ends with this one at the latest. A crash of it is
+// an InputError, too. Throws std::bad_alloc where it had no memory, and LimitError where it cannot be started.
 [[nodiscard]] PlacedLattice read_grid_lattice(const std::string& path, const std::string& name);
 
-// read_vdb_facts() likewise.
+// As read_vdb_facts(), likewise.
 [[nodiscard]] VolumeFacts read_grid_facts(const std::string& path);
 
 }  // namespace raycone

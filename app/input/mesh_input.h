@@ -25,29 +25,29 @@ struct TransformedMesh {
   Matrix4 transform{};  // from the file's coordinates to the mesh's
 };
 
-// Moves and scales `mesh`, which is scaled and turned already, where `options` say so. Returns the matrix of all that
-// is done to a file's coordinates. Throws InputError, LimitError.
+// Moves and scales `mesh` where `options` say so (--normalize); --scale and turns are done already. Returns the matrix
+// of all that is done to the file's coordinates. Throws InputError, LimitError.
 [[nodiscard]] Matrix4 normalize_mesh(TriangleMesh& mesh, const MeshOptions& options);
 
-// The mesh as it is in the file, its concave polygons cut, scaled, turned and normalized as `options` say. Throws
-// InputError, LimitError where the file alone is too large for the memory.
+// Reads a mesh, cuts its concave polygons, and scales, turns and normalizes it as `options` say. Throws InputError, and
+// LimitError where the file alone is too large for the memory.
 [[nodiscard]] TransformedMesh read_mesh_file(const MeshOptions& options, const RunLimits& limits);
 
-// A mesh that all is done to that comes before anything is made of it, and what is known of it then.
+// A mesh that is ready to be evaluated, and what is known of it then.
 struct MeshToEvaluate {
   TriangleMesh mesh;
   OrientationCounts orientation;
   std::vector<ExteriorEdge> edges;
   MeshDefects defects;
-  std::vector<std::uint32_t> places;  // of its faces among those read; empty where they are the same
+  std::vector<std::uint32_t> places;  // of its faces among those read; empty: the same places
 };
 
-// The one place for all that is done. What the user should know about that and about the result is appended to
-// `warnings`, in a fixed order.
+// Does all that is done to a mesh before it is evaluated, in two steps. What the user should know about that and about
+// the result is appended to `warnings`, in a fixed order.
 [[nodiscard]] MeshToEvaluate mesh_to_evaluate(TriangleMesh as_read, const MeshOptions& options,
                                               std::vector<Warning>& warnings);
 
-// The steps of it, without the warnings but for the first one's: `weld-collapsed`.
+// These two steps alone, without the warnings but for `weld-collapsed`, which the first one gives.
 [[nodiscard]] TriangleMesh welded_mesh(TriangleMesh as_read, const MeshOptions& options,
                                        std::vector<Warning>& warnings);
 [[nodiscard]] MeshToEvaluate oriented_mesh(TriangleMesh welded, const MeshOptions& options);
@@ -63,7 +63,7 @@ class StrictWarning : public InputError {
   std::string name_;
 };
 
-// Prints `warnings` about `mesh`; throws the first of them as StrictWarning with --strict.
+// Prints `warnings` about `mesh`. With --strict throws the first of them as StrictWarning.
 void print_warnings(const std::vector<Warning>& warnings, const RunOptions& options, const std::string& mesh);
 
 }  // namespace raycone

@@ -14,16 +14,17 @@ namespace raycone {
 // take more memory than there is.
 [[nodiscard]] std::string read_list(const std::string& list);
 
-// The paths in `text`, in its order. One a line: a carriage return at its end and a byte order mark at the start of the
-// text are no part of it; lines of blanks only, and comments, whose first character that is no blank is #, are none.
-// With PathEnd::kNul each path ends so, and none is a comment. Throws InputError, with the name of the list and
-// the line, for a line that holds a NUL: no path does. `hint` is what may help then.
+// The paths in `text`, in its order. With PathEnd::kLineFeed there is one a line. A carriage return at the end of a
+// line and a byte order mark at the start of the text are no part of a path. Blank lines are skipped, and comments:
+// lines whose first character that is no blank is #. With PathEnd::kNul each path ends with a NUL, and there are no
+// comments. Throws InputError, with the name of the list and the line, for a line that holds a NUL: no path does.
+// `hint` is added to that message.
 [[nodiscard]] std::vector<std::string> paths_in_list(std::string_view text, const std::string& list, PathEnd end,
                                                      const std::string& hint = {});
 
-// The meshes of a job with labels, with those of the lists among them (@LIST) in their place. `points`: what else is
-// read, for "-". Throws InputError for a list that cannot be read or names none; UsageError where there are several
-// meshes and parts are no files, or two of all are standard input.
+// The options of a job with labels, with each list of meshes (@LIST) replaced by its meshes. `points`: the file of
+// points, which may be "-", too. Throws InputError for a list that cannot be read or names none; UsageError where there
+// are several meshes and parts are no files, or where standard input is named twice.
 [[nodiscard]] MeshOptions with_listed_meshes(const MeshOptions& mesh, const std::string& points = {});
 
 }  // namespace raycone

@@ -34,28 +34,29 @@ class MeshParts {
     std::vector<Warning> warnings;
   };
 
-  // Reads all files once, so that what is wrong with one is known before the work. Several files are kept as far as
-  // they are small, and read again when their turn comes, so that memory does not grow with their number; but where the
-  // mesh of all is used, or to normalize them, they are all kept. Throws as read_mesh_file(), and InputError where
-  // groups are asked for and the format has none. `options` and `limits` must outlive this.
+  // Reads all files once, so that what is wrong with one is known before the work. Of several files, small ones are
+  // kept; others are read again when their turn comes, so that memory does not grow with their number. But all are kept
+  // where the mesh of all is used, or to normalize them. Throws as read_mesh_file(), and InputError where groups are
+  // asked for and the format has none. `options` and `limits` must outlive this.
   MeshParts(const MeshOptions& options, const RunLimits& limits, WholeMesh whole);
 
   [[nodiscard]] const std::vector<File>& files() const { return files_; }
   [[nodiscard]] const Matrix4& transform() const { return transform_; }
-  // Of all files; with a distance to weld within, which moves vertices, of each as a run of it alone has it.
+  // The box of all files. With a distance to weld within, which moves vertices, each file is welded by itself first, as
+  // in a run of it alone.
   [[nodiscard]] const Box& box() const { return box_; }
 
   // At least one.
   [[nodiscard]] std::size_t size() const { return names_.size(); }
-  // By its file, group or number; never empty.
+  // From the part's file, group or number; never empty.
   [[nodiscard]] const std::string& name(std::size_t part) const { return names_[part]; }
   [[nodiscard]] std::size_t file_of(std::size_t part) const { return files_.size() > 1 ? part : 0; }
 
-  // All parts together. Only where it is used, or where there is one file.
+  // The mesh of all parts. Precondition: it is used (WholeMesh), or there is only one file.
   [[nodiscard]] const TriangleMesh& whole() const { return split_->whole(); }
 
-  // Welded, but not yet oriented. Warnings about the welding are appended to `warnings`. Throws as read_mesh_file(),
-  // and InputError where the file has changed since it was read first.
+  // A part, welded but not yet oriented; ask for each part once. Warnings about the welding are appended to `warnings`.
+  // Throws as read_mesh_file(), and InputError where the file has changed since it was read first.
   [[nodiscard]] TriangleMesh part(std::size_t part, std::vector<Warning>& warnings);
 
  private:

@@ -10,7 +10,7 @@
 
 namespace raycone {
 
-// The limits of a run on `mesh`, in force while this lives. One at a time.
+// The limits of a run on `mesh`, in force while this lives. Only one may live at a time.
 class RunLimits {
  public:
   RunLimits(const RunOptions& options, const std::string& mesh);
@@ -24,11 +24,11 @@ class RunLimits {
   std::uint64_t memory_;  // found once the workers' stacks are there
 };
 
-// What the machine lacks is a limit of the run: throws LimitError that names `mesh` and the limit (nullptr: unknown
-// yet) where the exception being handled is of memory, threads or Embree, and that exception again where it is not.
+// Call it in a catch block. Where the exception being handled is about memory, threads or Embree, throws a LimitError
+// that names `mesh` and the limit; else throws the exception again. `limits`: nullptr where they are not known yet.
 [[noreturn]] void rethrow_as_limit(const std::string& mesh, const RunLimits* limits);
 
-// body(limits), which are those of `options`.
+// Returns body(limits) under the limits of `options`. Throws as rethrow_as_limit().
 template <typename Body>
 auto within_limits(const RunOptions& options, const std::string& mesh, const Body& body) {
   std::optional<RunLimits> limits;

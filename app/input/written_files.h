@@ -38,10 +38,10 @@ struct WrittenFile {
 [[nodiscard]] std::vector<std::string> inputs_of(const SliceCommand& command);
 [[nodiscard]] std::vector<std::string> inputs_of(const SurfaceCommand& command);
 
-// Where the names of labels go, beside a NIfTI image of them: its name with .json in place of .nii or .nii.gz. Nothing
-// where no such file is written, or it is that of the report, which has the names, too.
+// Where the names of labels go, beside a NIfTI image of them: the image's name with .json in place of .nii or .nii.gz.
+// Nothing where no such file is written, or where the report has that name, as it has the labels' names, too.
 [[nodiscard]] std::optional<std::string> label_names_path(const LatticeCommand& command);
-// Null where there is none. Throws OutputError.
+// Opens that file; null where there is none. Throws OutputError.
 [[nodiscard]] std::unique_ptr<OutputFile> open_label_names(const LatticeCommand& command, OutputGroup& group);
 
 // Throws ReplacesFileError where one of `written` would replace or grow one of `inputs` ("-": standard input) or
@@ -49,7 +49,7 @@ struct WrittenFile {
 // the work, and once more when it is known which files a mesh refers to.
 void refuse_to_replace_input(const std::vector<WrittenFile>& written, const std::vector<std::string>& inputs);
 
-// Throws UsageError where what is no text would go to standard output, and that is a terminal.
+// Throws UsageError where output that is no text would go to standard output, and that is a terminal.
 void refuse_terminal(const std::vector<WrittenFile>& written);
 
 }  // namespace raycone

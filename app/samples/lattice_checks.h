@@ -10,14 +10,15 @@
 
 namespace raycone {
 
-// Of `sdf` voxels must be cubes, of `solid` along the axes of the world, too. Throws UsageError, which names `remedy`.
+// For `sdf`, voxels must be cubes; for `solid`, axes must be the world's, too. Throws UsageError, whose text names
+// `remedy`.
 void check_axes(const PlacedLattice& lattice, const FieldOptions& field, const std::string& remedy);
 
-// Whether a band cuts anything off: a wider one is everywhere. `band`: voxels.
+// Whether a band (voxels) cuts anything off `lattice`: one as wide as the lattice does not.
 [[nodiscard]] bool cuts_off(double band, const Lattice& lattice);
 
-// The format must hold distances of a voxel with all their digits, and those at the end of the band; but halves that
-// nothing cuts off may do after all, as their writers find. Throws OutputError about the file `output`.
+// The format must hold distances of a voxel with all their digits, and distances as large as the band. Halves that
+// nothing cuts off may do after all; their writers find out. Throws OutputError about the file `output`.
 void check_digits(const std::string& output, const PlacedLattice& lattice, const FieldOptions& field,
                   FieldFormat format, const OutputDescription& description);
 

@@ -15,8 +15,8 @@
 
 namespace raycone {
 
-// Sides that exceed a multiple of the spacing by no more than this part of it, which is rounding, get no sample behind
-// their end. Likewise pixels of slices.
+// A side that exceeds a multiple of the spacing by no more than this fraction of the spacing, which is rounding, gets
+// no sample behind its end. The same for pixels of slices.
 inline constexpr double kRoundingSlack = 1e-9;
 
 // A description of each flat side for which more than one sample was asked is appended to `warnings`. Throws
@@ -24,20 +24,21 @@ inline constexpr double kRoundingSlack = 1e-9;
 [[nodiscard]] Lattice choose_lattice(const Box& mesh_box, const LatticeRequest& request,
                                      std::vector<Warning>& warnings);
 
-// With this many samples more at either end of an axis. Throws as choose_lattice().
+// The lattice with so many samples more at either end of each axis. Throws as choose_lattice().
 using Layers = std::array<std::int64_t, 3>;
 [[nodiscard]] Lattice with_layers(Lattice lattice, const Layers& layers);
 
-// The layers that the lattice of a surface has around what is asked for: one, unless that has some by itself.
+// How many layers of samples the lattice of a surface has around what is asked for: one, or none where that has some
+// itself.
 [[nodiscard]] Layers layers_around(const std::variant<LatticeRequest, GridReference>& asked);
 
-// Throws UsageError where a negative width leaves nothing.
+// The box widened by `padding`. Throws UsageError where a negative width leaves nothing.
 [[nodiscard]] Box widened(Box box, const WorldPadding& padding);
 
-// Number of samples. Throws LimitError, with the number, where it exceeds 64 bits, or kMaxBlockSide along an axis.
+// The number of samples. Throws LimitError, with the number, where it exceeds 64 bits, or kMaxBlockSide along an axis.
 [[nodiscard]] std::uint64_t sample_count(const Lattice& lattice);
 
-// What `choose` returns. A LimitError that it throws gets the name of the file concerned.
+// Returns choose(). A LimitError that it throws gets the name of the file concerned.
 template <class Choose>
 [[nodiscard]] auto choose_for(const std::string& file, const Choose& choose) {
   try {

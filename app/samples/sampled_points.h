@@ -12,9 +12,9 @@
 
 namespace raycone {
 
-// `name`: the file that `mesh` is from; `precision`: of coordinates. Throws UsageError where the padding leaves nothing
-// of the box, InputError where points near the surface are asked for and there is none, LimitError where points would
-// not be finite.
+// Draws points as `request` says. `name`: the file that `mesh` is from; `precision`: of the points' coordinates. Throws
+// UsageError where the padding leaves nothing of the box, InputError where points on or near the surface are asked for
+// and no triangle has an area, LimitError where points would not be finite.
 [[nodiscard]] std::unique_ptr<PointReader> draw_points(const std::string& name, const TriangleMesh& mesh,
                                                        const SampleRequest& request, CoordinatePrecision precision);
 

@@ -18,11 +18,11 @@ struct Slice {
   std::optional<Lattice> lattice;  // of the pixels' centres, where the plane is across an axis; row 0 is its last
   std::string plane;               // "z = 1.5", for readers
   std::string short_plane;         // the same in fewer letters
-  bool is_flat = false;            // the box has no width or no height in the plane
+  bool is_flat = false;            // whether the box has no width or no height in the plane
 };
 
-// What the user should know is appended to `warnings`. Throws UsageError where the box has no such picture, LimitError
-// where double cannot hold it.
+// What the user should know is appended to `warnings`. Throws UsageError where no such picture of the box is possible,
+// LimitError where double cannot hold it.
 [[nodiscard]] Slice choose_slice(const Box& mesh_box, const SliceRequest& request, std::vector<Warning>& warnings);
 
 }  // namespace raycone

@@ -17,7 +17,7 @@ namespace raycone {
 
 // Pairs of faces that intersect.
 struct IntersectionInfo {
-  std::optional<std::uint64_t> pairs;  // nothing: there are some, which were not counted
+  std::optional<std::uint64_t> pairs;  // nothing: there are some, but they were not counted
 };
 
 struct MeshInfo {
@@ -37,11 +37,11 @@ struct MeshInfo {
 
 struct CostedLattice {
   Lattice lattice;
-  double seconds;  // of one thread, about
-  bool at_most;
+  double seconds;  // about, on one thread
+  bool at_most;    // whether `seconds` is a bound, not an estimate
 };
 
-// Those that the text tells of.
+// The lattices whose costs the text tells.
 struct CostedLattices {
   std::vector<CostedLattice> lattices;
   std::optional<std::string> no_more;  // why there are no others
@@ -60,7 +60,7 @@ class InfoTable {
 // "0.1", "(0, 1, 0.5)": nine digits.
 [[nodiscard]] std::string printed_point(const Vec3& point);
 
-// Aligned text for people; the costs are those of `threads` threads.
+// Aligned text for people. The costs printed are for `threads` threads.
 [[nodiscard]] std::string info_text(const MeshInfo& info, const CostedLattices& costed, int threads);
 
 }  // namespace raycone

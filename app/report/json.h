@@ -34,11 +34,11 @@ namespace raycone {
 [[nodiscard]] std::string to_json(const VolumeInfo& info);
 [[nodiscard]] std::string to_json_item(const VolumeInfo& info);
 
-// How it was made, as lines of text.
+// How a file was made, as lines of text: a name and a value each.
 [[nodiscard]] std::vector<std::pair<std::string, std::string>> made_lines(const VolumeFacts& facts);
 
-// The same facts as a row of a table behind the mesh's name: the keys of the JSON, `bounds` as x0 to z1, null as
-// nothing, lists joined by semicolons.
+// The facts of to_json() as a row of a table, behind the mesh's name: the keys of the JSON, `bounds` as x0 to z1,
+// nothing for null, lists joined by semicolons. First the header, then a row.
 [[nodiscard]] CsvRecord csv_names(const MeshInfo& info);
 [[nodiscard]] CsvRecord csv_values(const MeshInfo& info);
 

@@ -20,7 +20,7 @@ std::int64_t forward(std::span<const FaceEdge> edge, const Arrangement& arrangem
   return sum;
 }
 
-// As good as doubles are: only where a patch is looked at depends on it.
+// In doubles: only which point of a patch is looked at depends on it.
 double doubled_area(const Triangle& triangle, const Arrangement& arrangement) {
   const Vec3 a = arrangement.rounded(triangle[0]);
   return safe_norm(cross(arrangement.rounded(triangle[1]) - a, arrangement.rounded(triangle[2]) - a));

@@ -83,8 +83,8 @@ class EdgeCounts {
   std::map<Segment, int> counts_;
 };
 
-// Of each face of the triangulation how many more faces of the group go to the left around it than to the right: it is
-// one more on the left of an edge of a boundary than on its right.
+// For each face of the triangulation, how many more faces of the group run to the left around it than to the right. On
+// the left of an edge of a boundary it is one more than on its right.
 std::vector<int> multiplicities(const PlaneTriangulation& triangulation, const EdgeCounts& counts) {
   const std::vector<PlaneTriangulation::Face>& faces = triangulation.faces();
   std::vector<int> result(faces.size(), 0);

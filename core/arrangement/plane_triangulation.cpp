@@ -39,7 +39,8 @@ void PlaneTriangulation::replace_beyond(std::uint32_t face, std::uint32_t old_fa
   }
 }
 
-// By a walk towards the point. It takes turns with which edge it looks at first, so that it ends in any triangulation.
+// Walks towards the point. Which edge is looked at first changes as if by dice, so that the walk ends in any
+// triangulation.
 std::optional<std::uint32_t> PlaneTriangulation::face_with(Number point) {
   const auto is_outside = [&](std::uint32_t face, std::size_t across) {
     const Three& c = faces_[face].corners;
@@ -123,7 +124,7 @@ void PlaneTriangulation::flip(const Edge& edge) {
   replace_beyond(beyond_ca, face, other);
 }
 
-// In doubles, so as good as that: whether the corner beyond lies within the circle around the face.
+// Whether the corner beyond the edge lies within the circle around the face, clearly, in doubles.
 bool PlaneTriangulation::should_flip(const Edge& edge) const {
   const Face& face = faces_[edge.face];
   if (face.beyond[edge.across] == kNone) return false;

@@ -126,7 +126,8 @@ class Neighbours {
   std::vector<std::uint32_t> others_;
 };
 
-// The points that are no farther from a triangle, and next to its inside.
+// Which points are no farther from a triangle's plane than a distance, and over its inside, farther than that from its
+// sides.
 class NearInside {
  public:
   NearInside(const TriangleMesh& mesh, const Triangle& t, double distance)
@@ -151,7 +152,8 @@ class NearInside {
   std::array<double, 3> off_side_;  // by how much they must be, times that and the side's length
 };
 
-// Of each triangle a neighbour of its corners that is on it; none where the triangle has that corner itself.
+// For each triangle, a vertex on it that shares a triangle with one of its corners, but is none of them; none where
+// there is no such vertex.
 std::vector<std::optional<std::uint32_t>> corners_on_triangles(const TriangleMesh& mesh, double distance) {
   const Neighbours neighbours(mesh);
   std::vector<std::optional<std::uint32_t>> found(mesh.triangles.size());
@@ -200,8 +202,8 @@ bool split_at_flat_triangles(RuleBorder& border, double distance) {
   return true;
 }
 
-// Leaves one triangle less for each that is the same in the other direction: of all that have the same corners, the
-// first ones of the direction that has more.
+// Takes out pairs of triangles with the same corners in opposite directions: of all triangles with the same corners,
+// the first ones of the direction that has more are left.
 void cancel(RuleBorder& border) {
   struct Sorted {
     Triangle corners;  // in order

@@ -86,7 +86,7 @@ class BorderSplitter {
     return twice;
   }
 
-  // But one of a face at most: its others wait for the next round.
+  // Halves these edges, but only one of a face: its others wait for the next round.
   void halve_edges(const std::vector<Edge>& edges, const std::vector<FacePair>& pairs) {
     std::set<std::uint32_t> halved;
     auto pair = pairs.begin();
@@ -180,7 +180,7 @@ class BorderSplitter {
     bool against_perturbation;
     double distance;
   };
-  // The first one to try first.
+  // In the order in which they are tried.
   [[nodiscard]] std::vector<Way> ways() const {
     constexpr double kFarther = 4.0;
     const bool first = options_.against_perturbation;
@@ -189,7 +189,7 @@ class BorderSplitter {
     return {{first, near}, {!first, near}, {first, far}, {!first, far}};
   }
 
-  // By the first of the ways that there are, but for those that were in vain.
+  // The parting by the first way that is possible, after as many possible ways as were in vain at the vertex.
   [[nodiscard]] std::optional<FanParting> parting_at(std::uint32_t vertex, const std::vector<FanCone>& fans,
                                                      const FanSteps& steps) const {
     std::size_t in_vain = vertex < options_.in_vain.size() ? options_.in_vain[vertex] : 0;

@@ -48,8 +48,8 @@ class Rays {
   Rays(const std::vector<std::uint32_t>& triangles, Arrangement& arrangement, const TriangleMesh& mesh)
       : triangles_(triangles), arrangement_(arrangement), mesh_(mesh), found_(triangles.size()) {}
 
-  // Sends a ray from the point of each triangle that has these weights, where no ray before has met but insides of
-  // faces. Whether any is left.
+  // For each triangle whose winding number is not known yet, sends a ray from the point with these weights. Returns
+  // whether any is still not known, as its ray met an edge.
   bool send(const Weights& weights) {
     std::array<std::vector<Probe>, 3> probes;  // by axis
     for (std::size_t n = 0; n < triangles_.size(); ++n) {

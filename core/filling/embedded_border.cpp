@@ -72,7 +72,7 @@ bool has_all_nodes_right(const SurfaceMesh& surface, const NodeSet& inside) {
   return misplaced_nodes(surface.mesh, inside, &none).empty();
 }
 
-// With other ways: these are tried where there are faults, there alone.
+// With `options.other_ways`, these are tried only at vertices with faults.
 std::optional<SurfaceMesh> taken_apart(const RuleBorder& border, ApartOptions options) {
   const int most_tries = options.other_ways ? 3 : 1;  // two do in nearly all cases
   for (int tries = 0; tries < most_tries; ++tries) {
@@ -89,8 +89,8 @@ std::optional<SurfaceMesh> taken_apart(const RuleBorder& border, ApartOptions op
   return std::nullopt;
 }
 
-// With nodes on their sides, if that can be had. A node on a face counts as moved by less than any distance, along x by
-// more than along y, and along y by more than along z. If faces move the other way it stays on its side of them.
+// With nodes on their sides, if possible. A node on a face counts as moved by less than any distance, along x by more
+// than along y, and along y by more than along z. If the face moves the other way, the node stays on its side.
 std::optional<SurfaceMesh> taken_apart_beside(const NodeSet& inside, const RuleBorder& border, ApartOptions options) {
   std::optional<SurfaceMesh> surface = taken_apart(border, options);
   const bool has_moved = surface && surface->mesh.vertices.size() != border.mesh.vertices.size();

@@ -21,17 +21,18 @@ namespace {
 
 using Part = FillFaces::Part;
 
-// All in voxels. Faces with a longer side than kShort are divided where they are farther than kFlat from the threshold,
-// others where they are farther than kFlatIfShort; but none that are thinner than that, as the faces of cracks are, or
-// whose sides are all shorter than kFinest.
+// All in voxels. Faces with a side longer than kShort are divided where they are farther than kFlat from the threshold,
+// others where they are farther than kFlatIfShort. Faces thinner than kFlatIfShort, as those of cracks are, and faces
+// with no side longer than kFinest are not divided.
 constexpr double kShort = 1.0, kFlat = 0x1p-6, kFlatIfShort = 0.125, kFinest = 0.25;
-// How far behind a face of the mesh a vertex is that would be on it: faces in one plane but for roundings could not be
-// taken apart. Much less than kFlat, so that it is no reason to divide a face.
+// How far behind a face of the mesh a vertex is put that would be on it: faces that are in one plane but for roundings
+// could not be taken apart. Much less than kFlat, so that it is no reason to divide a face.
 constexpr double kBehind = 0x1p-10;
-// How far behind a node a vertex is where there is no threshold.
+// How far behind a node a vertex is put where there is no threshold.
 constexpr double kBeyond = 0.5;
-// A node this near is on the fill. If nodes are too far from it, it is not why they are on the wrong side; others of
-// these are not, if they are at most so far around.
+// A node no farther than kOff from the fill is on it. Where a node is on the wrong side, but farther than kFarthest
+// from the fill, the fill is not the reason: the node gets an octahedron, which reaches kIsland of the way to the
+// threshold.
 constexpr double kOff = 0x1p-20, kFarthest = 2.0, kIsland = 0.875;
 // The barycentric coordinate of a corner below which a point is next to the side across from it.
 constexpr double kNextToSide = 0.05;

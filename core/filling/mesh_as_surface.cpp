@@ -62,15 +62,15 @@ bool keep_seen(SurfaceMesh& surface, const TriangleMesh& mesh, const NodeSet& in
   return true;
 }
 
-// Of all components, in no order that says which is which.
+// The signs of all components, sorted: which component has which sign is not told.
 std::vector<int> sorted_signs(const TriangleMesh& mesh) {
   std::vector<int> signs = component_signs(mesh).of_component;
   std::ranges::sort(signs);
   return signs;
 }
 
-// Of a surface without faults, but perhaps with nodes on the wrong side: whether it has none. Merged, if it could be
-// without making flat a component that is thinner than planes are off each other.
+// Merges a surface that has no faults, but perhaps nodes on the wrong side; unless that makes a component flat, one
+// that is thinner than planes are off each other. Returns whether all nodes are on their sides.
 bool merge(FinishedSurface& made, const TriangleMesh& mesh, const NodeSet& inside, const MergeOptions& options) {
   CheckedMerge merged = checked_merge(made.surface, mesh, inside, options, {});
   made.merged = merged.surface && sorted_signs(merged.surface->mesh) == sorted_signs(made.surface.mesh);
@@ -129,8 +129,8 @@ std::optional<FinishedSurface> whole_mesh(const SurfaceInput& input, std::uint64
   return made;
 }
 
-// Where the mesh has to be rounded to floats, first to those not above: nodes lie in the lowest planes of most meshes,
-// and keep their sides of these so.
+// Where the mesh has to be rounded to floats, first to floats not above: nodes lie in the lowest planes of most meshes,
+// and then stay on their sides of these.
 std::optional<FinishedSurface> rounded_mesh(const SurfaceInput& input, std::uint64_t most) {
   const auto& [mesh, evaluators, inside, options] = input;
   const auto is_as_asked = [&precision = options.precision](const Vec3& p) { return rounded_to(precision, p) == p; };

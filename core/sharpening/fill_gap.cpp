@@ -172,8 +172,8 @@ bool GapFiller::fill_sectors(const Vec3& corner) {
   return limits_.are_on_mesh(on_mesh_);
 }
 
-// Of the corners around the one between two runs that are on both planes, as those between are, the number of the one
-// that is nearest to a point; counted on around the loop.
+// Looks at corners around the one between two runs that are on both planes, one next to the other. Returns the place of
+// the one that is nearest to a point, counted on around the loop.
 std::size_t GapFiller::nearest_end(std::size_t between, const Vec3& point) const {
   const std::size_t count = sides_.size(), before = side(between + count - 1).label, after = side(between).label;
   const auto is_on_line = [&](std::size_t i) {
@@ -224,8 +224,8 @@ GapFiller::Path GapFiller::turning_path(const std::vector<std::size_t>& corners,
   return path;
 }
 
-// That in which lines turn, where the three planes meet. False where there is none near the run and on the mesh, or no
-// other one is allowed.
+// Adds the corner in which lines turn, where the three planes meet. False where there is no such point near the run and
+// on the mesh, or no further corner is allowed.
 bool GapFiller::add_corner(const std::vector<std::size_t>& corners, const RunLabels& labels) {
   if (filled_.corners.size() >= limits_.new_corners) return false;
   const std::array planes{labels_[labels.own].plane, labels_[labels.before].plane, labels_[labels.after].plane};
@@ -267,7 +267,7 @@ void GapFiller::add_triangle(const Vec3& a, const Vec3& b, const Vec3& c) {
   }
 }
 
-// Where this fails, it has added some of what it should.
+// Where this fails, some of what it adds is there already: the caller takes it back.
 bool GapFiller::cut_off(const Run& run) {
   const Side before = side(run.first + sides_.size() - 1), after = side(run.first + run.sides), here = side(run.first);
   std::vector<std::size_t> corners;

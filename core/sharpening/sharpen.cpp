@@ -93,7 +93,7 @@ std::vector<std::uint32_t> Sharpener::find_parts(const std::vector<Triangle>& tr
   return part;
 }
 
-// Those where more than one of three faces is in no plane: much of what is pulled there would not pass the check.
+// Drops parts where more than one of three faces is in no plane: much of what is pulled there would not pass the check.
 void Sharpener::drop_parts(const std::vector<Triangle>& triangles, const std::vector<Placed>& of_all,
                            std::vector<std::uint32_t>& at_strips, std::vector<std::uint32_t>& part) {
   std::vector<std::int64_t> surplus(parts_.size(), 0);  // of faces in planes, which count half as much as others

@@ -63,7 +63,8 @@ std::size_t StripPulls::pull_all() {
   return pulls;
 }
 
-// Kept by one of its ends, which must be a vertex of strips: kNoFace where neither is one, too.
+// The face is looked for among those of one end, which must be a vertex of strips; kNoFace, too, where neither end is
+// one.
 std::uint32_t StripPulls::face_with(std::uint32_t from, std::uint32_t to) const {
   const std::uint32_t end = place(from) != Sharpener::kNoPlace ? from : to;
   if (place(end) == Sharpener::kNoPlace) return kNoFace;

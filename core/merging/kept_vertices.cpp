@@ -69,7 +69,7 @@ bool KeptVertices::keep_where(const MayStay& may_stay) {
   return is_more;
 }
 
-// Those that faces with faults have: that intersect others, or have no area.
+// The vertices of faces that intersect others, or have no area.
 std::vector<bool> KeptVertices::vertices_at_faults(const FaultyMerge& found) const {
   std::vector<bool> touched = faulty_vertices(kept_.size(), found.merged.triangles, found.faults);
   for (std::size_t face = 0; face < found.merged.triangles.size() && found.faults.degenerate_faces > 0; ++face) {

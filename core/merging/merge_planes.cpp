@@ -29,7 +29,7 @@ struct PlaneMerger::SecondPass {
   // A 1 for each brick of `now` that was there, with the same to merge. `same`: its same_faces().
   [[nodiscard]] std::vector<std::uint8_t> same_bricks(const SecondPass& now,
                                                       const std::vector<std::uint32_t>& same) const;
-  // Of such bricks, sets what these became.
+  // Sets what the `known` bricks of `now` have become.
   void repeat(SecondPass& now, const std::vector<std::uint8_t>& known, const std::vector<std::uint32_t>& same,
               MergedFaces& merged, std::vector<std::uint8_t>& settled) const;
 };
@@ -123,7 +123,7 @@ MergedFaces PlaneMerger::merge(const std::vector<bool>& kept) {
   return merged;
 }
 
-// Where the first bricks left the same as in the last call, the second ones make the same of it.
+// The second bricks become what they became in the last call, where the first ones left them the same faces.
 void PlaneMerger::merge_second_bricks(const std::vector<bool>& kept, BrickMerger& merger, MergedFaces& merged,
                                       std::vector<std::uint8_t>& settled) {
   constexpr double kHalf = 0.5;

@@ -14,8 +14,9 @@ namespace {
 // Pulls make no face of less shape_along() than this, unless there was one before.
 constexpr double kLeastShape = 2e-3;
 
-// Of two planes nearly back to back, with less than 30 degrees of solid between them. Between others, a point that is
-// as near to both is no more than four times as far from the line where they meet.
+// Cosine between the fronts of two planes that are nearly back to back, with less than 30 degrees of solid between
+// them. Where there are more, a point that is near to both planes is no more than four times as far from the line where
+// they meet.
 constexpr double kBackToBack = -0.866;  // cosine
 
 double longest_square(const Vec3& u, const Vec3& v) {
@@ -114,7 +115,7 @@ std::uint32_t PatchMerger::plane_at(std::uint32_t face) {
   return plane;
 }
 
-// They lie between points that are kept off one node of the lattice, where the mesh passes through it.
+// Needles lie between points that are kept off one node of the lattice, where the mesh passes through it.
 bool PatchMerger::is_needle(std::uint32_t face) const {
   const Triangle& t = faces_[face].corners;
   const Vec3 u = position(t[1]) - position(t[0]), v = position(t[2]) - position(t[0]), normal = cross(u, v);
@@ -288,7 +289,7 @@ double PatchMerger::distance(std::uint32_t v, std::uint32_t w) const {
 
 bool PatchMerger::is_at_node(std::uint32_t v, std::uint32_t w) const { return distance(v, w) < limits_.needle; }
 
-// That are no needles, at v, whose star is known, and its neighbours there.
+// The faces that are no needles at v, whose star is known, and at its neighbours at the same node.
 std::vector<std::uint32_t> PatchMerger::faces_at_node(std::uint32_t v) const {
   std::vector<std::uint32_t> faces;
   const auto add = [&](std::uint32_t vertex) {

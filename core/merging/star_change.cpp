@@ -204,7 +204,7 @@ bool StarChange::passes_node_below_vertex(const Lattice& lattice) const {
   return false;
 }
 
-// That holds all that is between the faces, as far as is_between() can tell.
+// A box that holds all that is between the faces, as far as is_between() can tell.
 Box StarChange::box() const {
   constexpr double kSlack = 16 * kDoubt;
   Box box{vertex_, vertex_};

@@ -177,7 +177,8 @@ void CellContour::add_polygons() {
   part_.full_triangles += triangles_of_tetrahedra();
 }
 
-// Of sections, faces within the cell count as if a crease that comes into a tetrahedron left it by one of them.
+// How many triangles the cell's tetrahedra would have. With sections, the points of faces within the cell are not
+// known: where a crease comes into a tetrahedron, it counts as leaving it by such a face.
 std::uint64_t CellContour::triangles_of_tetrahedra() {
   const bool knows_all = face_points_.kind() == PointsOfFaces::kOne;
   std::uint64_t count = 0;

@@ -33,7 +33,7 @@ struct FaceEdges {
   std::array<Vec3, 2> normals;
 };
 
-// Where their points are of one source, the surface is not bent there, and nobody asks for more: nothing, then.
+// Nothing where the points of both edges are of one source: the surface is not bent there.
 std::optional<FaceEdges> edges_of_two(const SurfaceInCells& surface, std::uint32_t n,
                                       const kuhn::FaceDirections& face) {
   const SurfaceCells& cells = surface.cells;

@@ -31,7 +31,7 @@ bool line_meets_triangle(const Vec3& p, const Vec3& q, const Corners3& triangle)
   return first * third >= 0 && second * third >= 0;
 }
 
-// Of a plane that is as far from the ends, on the way from the first to the second.
+// Where a segment meets a plane that is so far from its ends: 0 at the first, 1 at the second.
 double place_between(Long of_first, Long of_second) {
   const Long at = of_first / (of_first + of_second);
   return at >= 0 && at <= 1 ? static_cast<double>(at) : 0.5;  // 0 / 0, where a needle's normal underflows

@@ -88,7 +88,7 @@ void keep_places(std::vector<SegmentHit>& hits) {
   hits.resize(left);
 }
 
-// Of the edges of some cells; leaves those that are open.
+// Finds where the edges of cells [first, end) meet triangles. Leaves in open_ those for which that is not enough.
 void EdgePointFinder::find_hits(std::size_t first, std::size_t end) {
   std::vector<std::vector<OpenEdge>> open((end - first + kCellsPerTask - 1) / kCellsPerTask);
   parallel_for_each(open.size(), [&](std::size_t n) {
@@ -103,7 +103,7 @@ void EdgePointFinder::find_hits(std::size_t first, std::size_t end) {
   for (std::vector<OpenEdge>& some : open) std::ranges::move(some, std::back_inserter(open_));
 }
 
-// Of the edges of one cell; sets those where hits alone tell.
+// The same for the edges of one cell. Sets the points that follow from hits alone.
 void EdgePointFinder::find_hits(std::uint32_t number, HitFinder& finder, std::vector<SegmentHit>& hits,
                                 std::vector<OpenEdge>& open) {
   const SurfaceCell& cell = cells_.cells()[number];
@@ -198,8 +198,8 @@ std::vector<EdgePointFinder::Sides> EdgePointFinder::sides_in_open(const std::ve
   return sides;
 }
 
-// Whether that is where the edge leaves the set, or just before or behind it. Next to an end the rule is what it is
-// there, whatever rounding makes of the probe.
+// Whether the edge leaves the set at this place, or just before or behind it. Next to an end the rule is what it is at
+// the end, whatever rounding makes of the probe.
 bool EdgePointFinder::decides(const OpenEdge& open, std::size_t place, const Sides& sides) {
   const double here = open.hits[place].at, last = place > 0 ? open.hits[place - 1].at : 0.0;
   const bool is_last = place + 1 == open.hits.size();

@@ -13,7 +13,7 @@ namespace raycone {
 
 namespace {
 
-// Those of a row of cells that have nodes of both kinds, where nodes have places 64 `word` and on: a bit for each.
+// Which cells of a row have nodes of both kinds: a bit for each of the 64 cells from 64 * `word` on.
 std::uint64_t mixed_among(const std::array<const std::uint64_t*, 4>& rows, std::int64_t word, std::int64_t words) {
   std::uint64_t any = 0, all = ~std::uint64_t{0};
   for (const std::uint64_t* const row : rows) {

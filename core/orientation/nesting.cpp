@@ -93,7 +93,7 @@ class Nesting {
     return points;
   }
 
-  // Of `inner` those that may lie within `outer` as far as this look tells; the last one tells.
+  // Those of `inner` that may lie within `outer`, as far as this look tells. The last look (kAll) decides.
   [[nodiscard]] Numbers not_excluded(std::uint32_t outer, const Numbers& inner, Look look) const {
     constexpr std::size_t kMostTogether = std::size_t{1} << 20;  // in memory
     Numbers left;
@@ -116,7 +116,7 @@ class Nesting {
     return left;
   }
 
-  // Of surfaces whose points end there.
+  // Per surface: what its points say, which end at ends[n].
   [[nodiscard]] std::vector<Verdict> verdicts_of(std::uint32_t outer, std::span<const Vec3> points,
                                                  std::span<const std::size_t> ends) const {
     const Box& box = boxes_[outer];

@@ -110,7 +110,7 @@ class TreeBuilder {
     return depth_[a] != depth_[b] ? depth_[a] > depth_[b] : places_.has_first_face(a, b);
   }
 
-  // Of those that are not settled. What it waits for has its box, or would come before it.
+  // The first surface, by its place, that is not settled. What it waits for has its box, or would come before it.
   std::uint32_t first_of_circles() {
     if (by_place_.empty()) {
       by_place_.resize(around_.size());

@@ -155,7 +155,7 @@ class OpenSurfaceTurner::Search {
     return best;
   }
 
-  // From what rays say, and on from there: what is far counts as it is turned at the time.
+  // Starts from what rays say. In each round, surfaces that are far count as they are turned then.
   [[nodiscard]] std::vector<int> turn_many() const {
     DipoleTree tree = far_tree();
     SignProblem near = problem(near_samples(tree));

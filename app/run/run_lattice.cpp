@@ -38,7 +38,7 @@ PlacedLattice lattice_for(const LatticeCommand& command, const Box& box, std::ve
   return lattice;
 }
 
-// A band in voxels that all samples are in: as wide as the box of mesh and lattice is long, from corner to corner.
+// A band (voxels) that holds all samples: as wide as the diagonal of the box around mesh and lattice is long.
 double band_of_all(const Box& mesh_box, const PlacedLattice& lattice) {
   const Box all = hull(mesh_box, box_of(lattice));
   const Vec3 sides = all.upper - all.lower;
@@ -68,8 +68,8 @@ void load(const LatticeCommand& command, MeshRun& run, LoadedMesh& loaded) {
   loaded.box = loaded.parts->box();
 }
 
-// The lattice of the surface that solid distances are to: that of `raycone surface`, since faces are merged, and points
-// kept off nodes, as the whole lattice has it.
+// The lattice of the surface that solid distances are to. It is that of `raycone surface`: how faces are merged, and
+// points kept off nodes, depends on the whole lattice.
 Lattice solid_lattice(const LatticeCommand& command, const PlacedLattice& lattice) {
   const auto layered = [&] { return with_layers(world_order(lattice)->lattice, layers_around(command.lattice)); };
   return choose_for(command.mesh.path, layered);
@@ -98,7 +98,7 @@ TriangleMesh solid_of(const LatticeCommand& command, MeshRun& run, const Triangl
   });
 }
 
-// The lattice, and where distances end that nothing cuts off.
+// Sets the report's lattice and its samples and, with --band all, the band of `command`.
 void choose(LatticeCommand& command, const Box& mesh_box, MeshRun& run) {
   RunReport& report = run.report;
   report.lattice = lattice_for(command, mesh_box, report.warnings);

@@ -41,8 +41,8 @@ struct PointBatch {
   bool gathered = false;  // of several that the reader gives, as long as none has to be waited for
 };
 
-// Where a boundary is summed over or a triangle is searched for, many points that are known to come share much: the
-// more at a time, the less time each takes. That needs memory.
+// Where a boundary is summed, or a nearest triangle is searched for, many points at a time share much of the work; that
+// needs memory. Only where the number of points is known beforehand.
 PointBatch batch_for(const PointsCommand& command, const PointReader& reader, bool open, const RunLimits& limits) {
   constexpr std::size_t kMany = std::size_t{1} << 18;
   constexpr std::uint64_t kEnoughMemory = std::uint64_t{1} << 29;
@@ -53,7 +53,7 @@ PointBatch batch_for(const PointsCommand& command, const PointReader& reader, bo
   return batch;
 }
 
-// As reader.next().
+// As reader.next(); gathers several of its batches where `batch` says so.
 bool next(PointReader& reader, const PointBatch& batch, std::vector<Vec3>& points) {
   if (!reader.next(points, batch.most)) return false;
   std::vector<Vec3> more;
@@ -64,13 +64,13 @@ bool next(PointReader& reader, const PointBatch& batch, std::vector<Vec3>& point
   return true;
 }
 
-// Points that are drawn lie where fewer digits can say it, so that values belong to what is stored.
+// Drawn points are rounded to the precision that is written, so that values belong to the points that are stored.
 CoordinatePrecision drawn_precision(const PointsCommand& command) {
   const Precision values = command.encoding.precision.value_or(Precision::kDouble);
   return command.sample && values != Precision::kDouble ? CoordinatePrecision::kSingle : CoordinatePrecision::kDouble;
 }
 
-// Null where points are to be drawn, which takes the mesh.
+// Opens the points that are given; null where points are to be drawn, which needs the mesh first.
 std::unique_ptr<PointReader> open_given_points(const PointsCommand& command, const RunLimits& limits) {
   if (command.sample) return nullptr;
   std::unique_ptr<PointReader> reader;
@@ -85,8 +85,8 @@ std::unique_ptr<PointReader> open_given_points(const PointsCommand& command, con
   return reader;
 }
 
-// About how many there are, where that can be told. What comes through a pipe may be a few questions, and what is
-// packed may be long.
+// About how many points there are, where that can be told: not of a pipe, which may bring a few questions, nor of a
+// packed file, which may be long.
 std::optional<double> expected_points(const PointReader& reader, const std::string& path) {
   constexpr double kBytes = 25;  // of a line of text
   if (const std::optional<std::uint64_t> size = reader.size()) return static_cast<double>(*size);
@@ -191,7 +191,7 @@ void evaluate_points(const PointsCommand& command, PointWork& work, MeshRun& run
   }
 }
 
-// Whether no inside point says something about the mesh. Given points may be anywhere; of a few, all may miss.
+// Whether it is worth a warning if no point is inside. Given points may be anywhere; of a few, all may miss the mesh.
 bool should_have_inside(const PointsCommand& command, const TriangleMesh& mesh) {
   constexpr std::uint64_t kMany = 1000;
   return command.sample && !command.sample->bounds && points_off_surface(*command.sample) >= kMany &&

@@ -44,7 +44,7 @@ bool is_on_lattice(const Slice& slice, const FieldOptions& field) {
 // Points evaluated at a time.
 constexpr std::int64_t kPixelBatch = std::int64_t{1} << 18;
 
-// Bytes that values of all pixels take while they are evaluated, beside themselves. Those of points come in batches.
+// Bytes that evaluating all pixels takes beside their values. Of points little: they come in batches.
 double evaluation_memory(const Slice& slice, const FieldOptions& field, const RunReport& report) {
   if (field.has(Field::kLabel)) {
     const double volume = slice.lattice ? LabelVolume::bytes(*slice.lattice, report.parts.size()) : 0.0;
@@ -58,7 +58,7 @@ PictureFrame frame_of(const SliceCommand& command) {
   return command.framed ? PictureFrame::kAxesAndLegend : PictureFrame::kNone;
 }
 
-// Refuses pictures that cannot fit, before any work on them. Samples are gone when the picture is made.
+// Refuses pictures that do not fit, before any work on them. Samples and picture are not in memory at one time.
 void check_slice_memory(const Slice& slice, const SliceCommand& command, const RunReport& report,
                         const RunLimits& limits) {
   if (!is_on_lattice(slice, command.field)) {
@@ -142,7 +142,7 @@ void evaluate_labels(LabelledParts& parts, const Slice& slice, const FieldOption
   std::ranges::copy(labels, values.begin());
 }
 
-// Of the pixels' centres; row 0 of the picture is its last one.
+// The lattice of the pixels' centres. Row 0 of the picture is its last row.
 PlacedLattice lattice_of(const Slice& slice) {
   if (slice.lattice) return *slice.lattice;
   const PlaneView& view = slice.view;
@@ -164,7 +164,7 @@ PictureField picture_field(const FieldOptions& field) {
   return field.has(Field::kDistance) ? PictureField::kDistance : PictureField::kWinding;
 }
 
-// What the picture shows, of which the first that there is room for is drawn.
+// Titles of the picture, the longest first: the first one that there is room for is drawn.
 std::vector<std::string> titles_of(const RunReport& report, const Slice& slice) {
   const std::string name = std::filesystem::path(report.mesh).filename().string();
   const std::string mesh = report.meshes.size() > 1 ? counted(report.meshes.size(), "mesh") : name;

@@ -18,7 +18,7 @@
 namespace raycone {
 namespace {
 
-// Around what is asked for, with what --thicken needs.
+// The layers of samples around what is asked for, with those that --thicken needs.
 Layers layers_of(const SurfaceCommand& command, const Vec3& spacing) {
   constexpr double kMost = 1e6;
   Layers layers = layers_around(command.lattice);
@@ -30,7 +30,7 @@ Layers layers_of(const SurfaceCommand& command, const Vec3& spacing) {
   return layers;
 }
 
-// With a layer of samples around what is asked for, unless that has one by itself, and with room to grow.
+// The lattice that is asked for, with layers_of() around it.
 Lattice surface_lattice(const SurfaceCommand& command, const TriangleMesh& mesh, std::vector<Warning>& warnings) {
   const auto* const grid = std::get_if<GridReference>(&command.lattice);
   const auto chosen = [&] {

@@ -39,7 +39,7 @@ std::string bytes_of(const PlacedLattice& lattice) {
   return {reinterpret_cast<const char*>(&lattice), sizeof lattice};
 }
 
-// Grids and facts come behind the rest, in groups of two and three.
+// The facts as a message: grids and notes on how the file was made come last, in groups of two and three.
 Message message_of(const VolumeFacts& facts) {
   Message message{facts.format, facts.lattice ? bytes_of(*facts.lattice) : "", facts.no_lattice,
                   std::to_string(facts.arrays.size())};
@@ -86,7 +86,7 @@ Message outcome_of_reading(const std::string& what, const std::string& path, con
   fail_disturbed(path);
 }
 
-// Both throw std::runtime_error for what no reader writes.
+// The next two throw std::runtime_error for bytes that no reader writes.
 PlacedLattice lattice_from(const std::string& bytes) {
   PlacedLattice lattice;
   if (bytes.size() != sizeof lattice) throw std::runtime_error("a lattice of another size");
@@ -165,7 +165,7 @@ std::string end_of(pid_t process, const std::string& path) {
   return status == 0 ? "" : "exit status " + std::to_string(status);
 }
 
-// What another process wrote.
+// Starts a reader, waits for it, and returns what it wrote.
 std::string answer_of_reader(const std::string& what, const std::string& path, const std::string& name) {
   Pipe pipe = open_pipe(path);
   const pid_t process = start_reader(pipe.writing, what, path, name);
@@ -176,7 +176,7 @@ std::string answer_of_reader(const std::string& what, const std::string& path, c
   return answer;
 }
 
-// What `take` makes of what another process has read.
+// Has another process read a file. Returns what `take` makes of the strings that it wrote.
 template <typename Take>
 auto read_elsewhere(const std::string& what, const std::string& path, const std::string& name, const Take& take) {
   const std::string answer = answer_of_reader(what, path, name);

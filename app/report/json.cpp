@@ -62,7 +62,7 @@ Json to_object(const Verification& verification) {
   return object;
 }
 
-// What was checked is said to be so: a surface with a fault is never written.
+// That the surface is closed and manifold is not asked here: it was checked, and one with a fault is never written.
 Json to_object(const SurfaceReport& surface) {
   return {{"vertices", surface.vertices},
           {"faces", surface.faces},
@@ -75,7 +75,7 @@ Json to_object(const SurfaceReport& surface) {
           {"dropped_area", surface.dropped_area}};
 }
 
-// Of parts or warnings.
+// The names of parts or warnings.
 template <class Named>
 Json names_of(const std::vector<Named>& all) {
   Json names = Json::array();
@@ -208,7 +208,7 @@ Json made_object(const VolumeFacts& facts) {
   return object;
 }
 
-// Of a table, where all meshes have the same columns, whatever their format.
+// The object of a mesh for a table: all meshes have the same columns, whatever their format.
 Json to_row(const MeshInfo& info) {
   Json row = to_object(info);
   row.erase("unit");

@@ -36,7 +36,7 @@ struct SurfaceCell {
   }
 };
 
-// An edge with one end inside, one outside, and its number among SurfaceCells::edges().
+// An edge with one end inside and one outside, and its number: below SurfaceCells::edges().
 struct MixedEdge {
   Vec3 inside, outside;
   std::uint32_t number;
@@ -44,17 +44,16 @@ struct MixedEdge {
   [[nodiscard]] Vec3 point(double at) const { return inside + at * (outside - inside); }
 };
 
-// How many cells have nodes of both kinds: those that SurfaceCells would hold. Takes no memory, and little
-// time. Precondition: !nodes.reaches_border().
+// How many cells are mixed: have nodes of both kinds. SurfaceCells would hold these. Takes no memory, and little time.
+// Precondition: !nodes.reaches_border().
 [[nodiscard]] std::uint64_t mixed_cells(const NodeSet& nodes);
 
-// Calls visit(node) for the lowest node of each such cell, in the order of their numbers. Precondition:
+// Calls visit(node) for the lowest node of each mixed cell, in the order of their numbers. Precondition:
 // !nodes.reaches_border().
 void for_each_mixed_cell(const NodeSet& nodes, const std::function<void(const NodeSet::Node&)>& visit);
 
-// All cells with nodes of both kinds, in the order of their nodes, and the mixed edges of the Kuhn subdivision: those
-// of one cell after the other, by direction. An edge, a face or a tetrahedron with nodes of both kinds has its lowest
-// node in such a cell.
+// All mixed cells, in the order of their nodes, and the mixed edges of the Kuhn subdivision: those of one cell after
+// the other, by direction. A mixed edge, face or tetrahedron has its lowest node in a mixed cell.
 class SurfaceCells {
  public:
   // Precondition: !nodes.reaches_border(). Throws std::length_error for more than 2147483632 edges.

@@ -28,11 +28,10 @@ enum class ContourCells : std::uint8_t {
 // that face.
 inline constexpr std::uint64_t kWholeCell = std::uint64_t{1} << 63, kFaceOfCell = std::uint64_t{1} << 62;
 
-// In each tetrahedron with nodes of both kinds, the points on its edges and faces form a loop of straight lines.
-// Without face points the loop is filled by one or two triangles; with them, by a cone from a point within the
-// tetrahedron: the end of a crease; else where a crease leaves the tetrahedron through the face with nodes of one kind;
-// else another point of a crease. Where there are no creases, it is the point where all planes meet, or the mean of the
-// points.
+// In each mixed tetrahedron, the points on its edges and faces form a loop of straight lines. Without face points the
+// loop is filled by one or two triangles; with them, by a cone from a point within the tetrahedron: the end of a
+// crease; else where a crease leaves the tetrahedron through the face with nodes of one kind; else another point of a
+// crease. Where there are no creases, it is the point where all planes meet, or the mean of the points.
 // Vertices are first the edge points in their order, then the face points, then the apexes (those points of tetrahedra
 // and cells); points that no triangle has are left out. Where `face_points` are sections, points of faces within cells
 // are looked for where they are needed, and are among the apexes. Fronts look from inside to outside. Throws

@@ -24,7 +24,7 @@ inline constexpr std::uint64_t kFacesPerCell = 16;  // a power of two, more than
 }
 [[nodiscard]] constexpr std::size_t face_in_cell(std::uint64_t number) { return number % kFacesPerCell; }
 
-// The two cells at a face with nodes of both kinds, by their places. Where the face is within a cell, twice that cell.
+// The two cells at a mixed face, by their places. Where the face is within a cell, twice that cell.
 [[nodiscard]] std::array<std::uint32_t, 2> cells_at_face(const SurfaceCells& cells, std::uint32_t cell,
                                                          std::size_t face);
 
@@ -33,10 +33,9 @@ enum class PointsOfFaces : std::uint8_t {
   kSections,  // of faces between cells, not of those within one
 };
 
-// A point of a crease in a face with nodes of both kinds, where the planes at the face's two edge points disagree, or
-// one of the points is in a hole: the point where the planes meet, if a crease is there; else the point of a crease
-// that is farthest from the straight line between the two. None elsewhere. Precondition: `creases` has entered the
-// cell.
+// A point of a crease in a mixed face, where the planes at the face's two edge points disagree, or one of the points is
+// in a hole: the point where the planes meet, if a crease is there; else the point of a crease that is farthest from
+// the straight line between the two. None elsewhere. Precondition: `creases` has entered the cell.
 [[nodiscard]] std::optional<Vec3> face_point(const SurfaceInCells& surface, std::uint32_t cell, std::size_t face,
                                              CreasesHere& creases);
 

@@ -5,7 +5,7 @@
 
 namespace raycone {
 
-// Flattens out of `border` what is thinner than `distance`. Vertices within `distance` of each other become one, as
+// Takes out of `border` what is thinner than `distance`. Vertices within `distance` of each other become one, as
 // representatives_within() says. Where a corner of a triangle is that near to the opposite side, all triangles with
 // that side are cut at the corner. Where a neighbour of a corner is that near to the triangle and over its inside, the
 // triangle is cut in three there. The cuts are repeated until nothing changes, a few times at most; cuts at sides that

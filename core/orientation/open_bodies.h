@@ -17,12 +17,12 @@ struct OpenBodies {
   int relation = 0;
 };
 
-// Turns closed patches that lie within open bodies, of those that lie outside all other closed ones; each together with
-// what lies in it. A patch lies within the bodies if these wind around all of its samples by more than half a turn, one
-// way. If the patch's faces agree as stored, and the bodies' faces that do so wind around it as far, patch and bodies
-// keep their relation as stored. Else the patch becomes a cavity. Only the thousand patches with the largest samples
-// are looked at. `signs` is changed; returns whether any patch was turned. Depends on coordinates only. `vertices`:
-// in_unit_box(). Uses the threads that ThreadLimit allows; needs DefaultFloatingPoint.
+// Turns, where need be, closed patches that lie within open bodies and outside all other closed patches; each together
+// with what lies in it. A patch lies within the bodies if these wind around all of its samples by more than half a
+// turn, one way. If the patch's faces agree as stored, and the bodies' faces that do so wind around it as far, patch
+// and bodies keep their relation as stored. Else the patch becomes a cavity. Only the thousand patches with the largest
+// samples are looked at. `signs` is changed; returns whether any patch was turned. Depends on coordinates only.
+// `vertices`: in_unit_box(). Uses the threads that ThreadLimit allows; needs DefaultFloatingPoint.
 bool turn_within_open_bodies(const std::vector<ClosedPatch>& patches, const OpenBodies& bodies,
                              const NumberedVertices& vertices, ClosedSigns& signs);
 

@@ -17,7 +17,7 @@ namespace raycone {
 struct SurfaceCell {
   std::array<std::int64_t, 3> node;  // from 0
   std::uint8_t inside;               // a bit per corner; neither none nor all
-  std::uint32_t first_edge;
+  std::uint32_t first_edge;          // the number of its first mixed edge
 
   [[nodiscard]] bool is_inside(unsigned corner) const { return (inside >> corner & 1U) != 0; }
   // How many of eight bits are set: by default, compilers do not use the processor's instruction for it.

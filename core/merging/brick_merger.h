@@ -30,8 +30,8 @@ class BrickMerger {
 
   void merge_all(const SurfaceBricks& bricks);
 
-  // Merges all bricks but those that have a 1 in `known`. Adds to `changed`, for each of these bricks, its vertices
-  // that other bricks share and that have other faces in it now. Both have one element per brick.
+  // Merges the bricks that have a 0 in `known`. Adds to the brick's `changed` its vertices that other bricks share and
+  // that have other faces in it now. Both lists have one element per brick.
   void merge_unknown(const SurfaceBricks& bricks, const std::vector<std::uint8_t>& known,
                      std::vector<std::vector<std::uint32_t>>& changed);
 

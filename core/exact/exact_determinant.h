@@ -66,9 +66,9 @@ inline void add_product(ExactSum& sum, const Difference& x, const Difference& y,
   return {determinant(ay, az, by, bz), determinant(az, ax, bz, bx), determinant(ax, ay, bx, by)};
 }
 
-// The same as determinant(), rounded to double then, and never -0. 106 bits are enough unless it lies next to the
-// middle between two doubles, cancels nearly, or comes near to underflow (NaN and infinity fail the tests, too). It is
-// 0 for sure where the differences are doubles and their products, then exact, are the same.
+// determinant(), then rounded to double; never -0. 106 bits are enough unless the determinant lies next to the middle
+// between two doubles, nearly cancels, or comes near to underflow (NaN and infinity fail the tests, too). It is surely
+// 0 where the differences are doubles and their products, which are exact then, are the same.
 [[nodiscard]] inline double rounded_determinant(const Difference& a, const Difference& b, const Difference& c,
                                                 const Difference& d) {
   const auto exactly = [](const Difference& x) { return exact_sum(x.plus, x.minus); };

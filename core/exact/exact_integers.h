@@ -24,14 +24,14 @@ inline int exponent_to_integer(double x) {
   return kDigits - exponent;
 }
 
-// x times 2^exponent, which is an integer.
+// x times 2^exponent. Precondition: exponent >= exponent_to_integer(x).
 inline mpz_class integer(double x, int exponent) {
   int own = 0;
   const double digits = std::ldexp(std::frexp(x, &own), kDigits);
   return mpz_class(digits) << static_cast<mp_bitcnt_t>(std::max(own - kDigits + exponent, 0));
 }
 
-// The same of a point; not below 0.
+// e, not below 0, such that all coordinates times 2^e are integers.
 inline int exponent_to_integers(const Vec3& v) {
   return std::max({0, exponent_to_integer(v.x), exponent_to_integer(v.y), exponent_to_integer(v.z)});
 }

@@ -18,7 +18,7 @@ inline LongVec3 long_difference(const Vec3& a, const Vec3& b) {
 
 inline long double norm(const LongVec3& v) { return std::sqrt(dot(v, v)); }
 
-// Of a triangle; twice its area long.
+// A triangle's normal, twice its area long.
 inline LongVec3 long_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
   return cross(long_difference(b, a), long_difference(c, a));
 }

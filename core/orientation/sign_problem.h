@@ -23,13 +23,14 @@ class SignProblem {
   void add_surface(std::span<const Effect> effects);
   [[nodiscard]] std::size_t surfaces() const { return begin_.size() - 1; }
 
-  // Starting from no surface at all, one after the other gets the sign that makes the sum smaller.
+  // Adds the surfaces one after the other; each gets the sign that makes the sum smaller. Returns the signs, 1 or -1.
   [[nodiscard]] std::vector<int> one_after_the_other(std::vector<double> rest) const;
 
   [[nodiscard]] double sum(const std::vector<double>& rest, const std::vector<int>& sign) const;
 
-  // Turns surfaces until the sum is as small as is found: of many as long as each turn makes it smaller, of few beyond
-  // that. Returns the sum. Uses the threads that ThreadLimit allows; the same for any number of them.
+  // Turns surfaces (changes `sign`) until no smaller sum is found. Of many surfaces, each turn makes the sum smaller;
+  // of few, chains of turns may pass through larger sums. Returns the sum. Uses the threads that ThreadLimit allows;
+  // the same for any number of them.
   double improve(const std::vector<double>& rest, std::vector<int>& sign);
 
  private:
@@ -39,10 +40,9 @@ class SignProblem {
   [[nodiscard]] double slope(std::size_t surface, const std::vector<double>& rest) const;
   void add(std::size_t surface, int factor, std::vector<double>& rest) const;
   [[nodiscard]] std::vector<double> with_all(std::vector<double> rest, const std::vector<int>& sign) const;
-  // `rest`, from here on: with all surfaces.
-  // Turning a surface makes the sum smaller by 4 times this.
+  // From here on `rest` includes all surfaces. Turning a surface makes the sum smaller by 4 times its gain.
   [[nodiscard]] double gain(std::size_t surface, const std::vector<double>& rest, const std::vector<int>& sign) const;
-  // Whether any were turned: those that make the sum smaller by more than 4 times `least`.
+  // Turns surfaces that make the sum smaller by more than 4 times `least`. Returns whether there were any.
   bool turn_single(double least, std::vector<double>& rest, std::vector<int>& sign) const;
   void turn_chains(double least, const std::vector<double>& rest, std::vector<int>& sign);
   void make_products();

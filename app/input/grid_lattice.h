@@ -6,8 +6,8 @@
 
 namespace raycone {
 
-// That of an OpenVDB, NPZ, NRRD or NIfTI-1 file, whichever the file is by its content. Throws InputError where there is
-// none.
+// The lattice of an OpenVDB, NPZ, NRRD or NIfTI-1 file, whichever it is by its content. Throws InputError where there
+// is none.
 [[nodiscard]] PlacedLattice lattice_of_grid(const GridReference& grid);
 
 // The same samples as a lattice along the axes of the world. Throws UsageError where the lattice's axes are not the

@@ -29,12 +29,12 @@ inline constexpr std::uint32_t kFirstApex = 0x80000000;
 
 // The points that no triangle has.
 struct SparePoints {
-  // Of edges that are diagonals of cells' faces: whether the polygons of the cell above the face can do without, and
-  // those of the cell below. Each cell has places of its own, so that threads do not meet.
+  // Of edge points on diagonals of squares between two cells: whether the polygons of the cell above can do without,
+  // and those of the cell below. The two cells have lists of their own, so that threads do not meet.
   std::vector<std::uint8_t> above, below;
-  // Of edges: whether they are within a cell of polygons.
+  // Of edge points: whether they are within a cell of polygons.
   std::vector<std::uint8_t> within;
-  // Of edges, when these are settled, and of face points: whether they are spare.
+  // Of edge points (after settle_edges()) and of face points: whether they are spare.
   std::vector<std::uint8_t> edges, faces;
 
   // Makes `edges` of `within`, `above` and `below`: a point on a diagonal is spare where the polygons of both cells at

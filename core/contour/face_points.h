@@ -73,7 +73,7 @@ class FacePoints {
   // (by place). The other faces get the point that face_point() finds.
   void keep_sections_at(const std::vector<std::uint8_t>& cells_of_polygons, const SurfaceInCells& surface);
 
-  // These, but for points of faces that have a point `dropped` (by number).
+  // A copy without the points of faces that have a point `dropped` (by number).
   [[nodiscard]] FacePoints without(const std::vector<bool>& dropped) const;
 
  private:

@@ -48,7 +48,7 @@ class PlaneMerger {
   const TriangleMesh& input_;
   const Lattice& lattice_;
   MergeLimits limits_;
-  // Of the last call, when each brick was merged by itself; nothing before the first one.
+  // What the last call had when each first brick was merged by itself; empty before the first call.
   std::shared_ptr<const SurfaceBricks> bricks_;
   std::vector<Triangle> triangles_;
   std::vector<std::uint32_t> into_;

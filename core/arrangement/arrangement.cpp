@@ -1,6 +1,7 @@
 #include "core/arrangement/arrangement.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "core/arrangement/contact.h"
@@ -50,7 +51,7 @@ class Arrangement::Builder {
     const std::vector<std::uint32_t> group_of = make_groups(*pairs);
     constexpr std::uint64_t kLeastSteps = 1 << 20, kStepsPerPair = 64;
     Effort effort(kLeastSteps + kStepsPerPair * most_pairs);
-    if (!add_crossings(effort) || !cut_groups(effort)) return false;
+    if (!cut_groups(effort)) return false;
     for (const std::uint32_t face : faces) {
       if (group_of[face] == kNone) add(mesh_.triangles[face], face, 1);
     }
@@ -141,33 +142,56 @@ class Arrangement::Builder {
     }
   }
 
-  // To the points of the groups. False if that takes too long.
-  bool add_crossings(Effort& effort) {
-    std::vector<std::optional<std::vector<ExactPoints::Crossing>>> of_groups(groups_.size());
-    const bool is_done = parallel_for_each(groups_.size(), effort, [&](std::size_t n, Effort& own) {
-      of_groups[n] = crossings_of(groups_[n], result_.points_, own);
-      return of_groups[n].has_value();
-    });
-    if (!is_done) return false;
-    std::vector<ExactPoints::Crossing> crossings;
-    for (const auto& of_group : of_groups) crossings.insert(crossings.end(), of_group->begin(), of_group->end());
-    const std::vector<Number> made = result_.points_.add(crossings);
-    auto next = made.begin();
-    for (std::size_t n = 0; n < groups_.size(); ++n) {
-      const auto end = next + static_cast<std::ptrdiff_t>(of_groups[n]->size());
-      groups_[n].points.insert(groups_[n].points.end(), next, end);
-      next = end;
+  // Some groups at once: where all take too long, little is done in vain, and what they need meanwhile is little. False
+  // if that takes too long.
+  bool cut_groups(Effort& effort) {
+    constexpr std::size_t kSegmentsAtOnce = 4096;
+    TrianglesAround around{};
+    for (int axis = 0; axis < 3; ++axis) around[axis] = result_.points_.add_triangle_around(axis);
+    for (auto next = groups_.begin(); next != groups_.end();) {
+      const auto first = next;
+      for (std::size_t segments = 0; next != groups_.end() && segments < kSegmentsAtOnce; ++next) {
+        segments += next->segments.size() + 3 * next->faces.size();
+      }
+      const std::span<PlaneGroup> some(first, next);
+      if (!add_crossings(some, effort) || !cut(some, around, effort)) return false;
     }
     return true;
   }
 
-  // False if that takes too long.
-  bool cut_groups(Effort& effort) {
-    TrianglesAround around{};
-    for (int axis = 0; axis < 3; ++axis) around[axis] = result_.points_.add_triangle_around(axis);
-    std::vector<std::optional<std::vector<PlanePiece>>> pieces(groups_.size());
-    const bool is_done = parallel_for_each(groups_.size(), effort, [&](std::size_t n, Effort& own) {
-      pieces[n] = cut(groups_[n], result_.points_, around, own);
+  // Adds to the points of each group where its segments cross. False if that takes too long.
+  bool add_crossings(std::span<PlaneGroup> groups, Effort& effort) {
+    std::vector<std::optional<std::vector<ExactPoints::Crossing>>> of_groups(groups.size());
+    const bool is_done = parallel_for_each(groups.size(), effort, [&](std::size_t n, Effort& own) {
+      of_groups[n] = crossings_of(groups[n], result_.points_, own);
+      return of_groups[n].has_value();
+    });
+    if (!is_done) return false;
+    std::vector<ExactPoints::Crossing> crossings;
+    std::vector<std::ptrdiff_t> counts;
+    for (std::optional<std::vector<ExactPoints::Crossing>>& of_group : of_groups) {
+      counts.push_back(std::ssize(*of_group));
+      if (crossings.empty()) {
+        crossings = *std::move(of_group);
+      } else {
+        crossings.insert(crossings.end(), of_group->begin(), of_group->end());
+      }
+      of_group.reset();
+    }
+    const std::vector<Number> made = result_.points_.add(crossings);
+    auto next = made.begin();
+    for (std::size_t n = 0; n < groups.size(); next += counts[n++]) {
+      groups[n].points.insert(groups[n].points.end(), next, next + counts[n]);
+    }
+    return true;
+  }
+
+  // Adds the pieces of each group, and takes what is in it. False if that takes too long.
+  bool cut(std::span<PlaneGroup> groups, const TrianglesAround& around, Effort& effort) {
+    std::vector<std::optional<std::vector<PlanePiece>>> pieces(groups.size());
+    const bool is_done = parallel_for_each(groups.size(), effort, [&](std::size_t n, Effort& own) {
+      pieces[n] = raycone::cut(groups[n], result_.points_, around, own);
+      groups[n] = {};
       return pieces[n].has_value();
     });
     if (!is_done) return false;

@@ -26,20 +26,21 @@ class Effort {
   std::uint64_t left_;
 };
 
-// Calls work(n, effort), which returns whether it is done, for each n below `count`, on the threads that ThreadLimit
-// allows. False where a call returns false, or where all calls together take more steps than are left; the same for any
-// number of threads.
+// Calls work(n, effort) for each n below `count`, on the threads that ThreadLimit allows. False if one of the calls
+// returns false, or if together they take all steps that there are: the same for any number of threads, as work that
+// lacks steps takes more than are left, whichever work comes first.
 template <class Work>
 [[nodiscard]] bool parallel_for_each(std::size_t count, Effort& effort, const Work& work) {
   const std::uint64_t most = effort.left();
   std::atomic<std::uint64_t> taken = 0;
   parallel_for_each(count, [&](std::size_t n) {
-    if (taken > most) return;  // the others are in vain
-    Effort own(most);
-    const bool is_done = work(n, own);
-    taken += is_done ? most - own.left() : most + 1;
+    const std::uint64_t before = taken;
+    if (before >= most) return;  // the others are in vain
+    Effort own(most - before);
+    const bool is_done = work(n, own) && own.left() > 0;
+    taken += is_done ? most - before - own.left() : most;
   });
-  return effort.take(taken);
+  return taken < most && effort.take(taken);
 }
 
 }  // namespace raycone

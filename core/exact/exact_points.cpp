@@ -137,16 +137,20 @@ struct ExactPoints::Table {
     rounded.push_back(at);
     return number;
   }
-  // make(n) for all n below `count`, by many threads, so many at once that it does not take much memory.
+  // make(n) for all n below `count`, by many threads, so many at once that it does not take much memory. Each point is
+  // a block of its own: where memory is short that fails, and not the integers in it (integer_memory.h).
   template <class Make>
   std::vector<Number> add_each(std::size_t count, const Make& make) {
-    constexpr std::size_t kAtOnce = 4096, kGrain = 32;
+    constexpr std::size_t kAtOnce = 256, kGrain = 16;
     std::vector<Number> numbers;
     numbers.reserve(count);
     for (std::size_t begin = 0; begin < count; begin += kAtOnce) {
-      std::vector<Placed> made(std::min(kAtOnce, count - begin));
-      parallel_for_each(made.size(), kGrain, [&](std::size_t n) { made[n] = placed(make(begin + n)); });
-      for (Placed& point : made) numbers.push_back(add(std::move(point)));
+      std::vector<std::unique_ptr<Placed>> made(std::min(kAtOnce, count - begin));
+      parallel_for_each(made.size(), kGrain, [&](std::size_t n) {
+        made[n] = std::make_unique<Placed>();
+        *made[n] = placed(make(begin + n));
+      });
+      for (const std::unique_ptr<Placed>& point : made) numbers.push_back(add(std::move(*point)));
     }
     return numbers;
   }

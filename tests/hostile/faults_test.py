@@ -6,6 +6,7 @@ the earlier outputs as they were or replaces them by the complete new ones. --lo
 """
 
 import csv
+import math
 import os
 import random
 import re
@@ -209,6 +210,23 @@ def refuse_what_data_cannot_hold():
         fail(what, process.returncode, process.stderr)
 
 
+def write_spheres(path):
+    """Four that meet each other: in thousands of points, whose coordinates are integers of GMP."""
+    rings, points = 16, 24
+    with open(path, "w", encoding="utf-8") as file:
+        for number in range(4):
+            for i in range(rings + 1):
+                for j in range(points):
+                    height, turn = math.pi * i / rings, 2 * math.pi * j / points + number
+                    x, y, z = math.sin(height) * math.cos(turn), math.sin(height) * math.sin(turn), math.cos(height)
+                    file.write("v %r %r %r\n" % (x + 0.3 * number, y + 0.07 * number**2, z - 0.11 * number))
+            first = number * (rings + 1) * points + 1
+            for i in range(rings):
+                for j in range(points):
+                    a, b = first + i * points + j, first + i * points + (j + 1) % points
+                    file.write("f %d %d %d\nf %d %d %d\n" % (a, a + points, b + points, a, b + points, b))
+
+
 if ("--memory" in sys.argv or FEW_THREADS) and is_sanitized():
     print("sanitizers do not live within limits of memory and threads")
     sys.exit(77)
@@ -224,6 +242,9 @@ with tempfile.TemporaryDirectory() as directory:
     if "--memory" in sys.argv:
         surface = Run("surface to PLY", "surface", CLOSED, "--resolution", "30", output="out.ply")  # much of it in GMP
         sweep_memory(surface, resource.RLIMIT_DATA, "data", 10 << 20, (100 if LONG else 1000) << 10)
+        write_spheres("spheres.obj")
+        surface = Run("surface of spheres", "surface", "spheres.obj", "--resolution", "16", output="out.ply")
+        sweep_memory(surface, resource.RLIMIT_DATA, "data", 12 << 20, (50 if LONG else 200) << 10)
         sweep_batch_memory((1 if LONG else 40) << 20)
         read_endless_meshes()
         read_endless_lists()

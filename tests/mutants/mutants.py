@@ -677,7 +677,7 @@ MUTANTS = [
     Mutant("faces_cut_apart_once", "edges of faces cross each other in a plane, too", [
         ("core/arrangement/plane_arrangement.cpp", "if (cross_each_other(s, t, axis, points)) found", "if (n > m) found")]),
     Mutant("steps_of_each_alone", "what all threads do together is limited", [
-        ("core/arrangement/effort.h", "return effort.take(taken);", "return true;")]),
+        ("core/arrangement/effort.h", "return taken < most && effort.take(taken);", "return true;")]),
     Mutant("multiplicity_forgotten", "two faces that lie on each other change winding numbers by two", [
         ("core/arrangement/plane_arrangement.cpp", "*face, std::abs(multiplicity[n])", "*face, 1")]),
     Mutant("corners_of_faces_missed", "a corner of one face on another is a point of both", [

@@ -23,6 +23,7 @@
 #include "app/run/labels.h"
 #include "app/run/mesh_run.h"
 #include "app/samples/disk_space.h"
+#include "app/samples/lattice_choice.h"
 #include "app/samples/sampled_points.h"
 #include "core/data/coordinate_precision.h"
 #include "core/data/triangle_mesh.h"
@@ -191,11 +192,21 @@ void evaluate_points(const PointsCommand& command, PointWork& work, MeshRun& run
   }
 }
 
+// Whether the points are drawn where the mesh is: their box is at most twice as wide along any axis.
+bool is_close_to(const Box& box, const WorldPadding& padding) {
+  const Box drawn = widened(box, padding);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (drawn.upper[axis] - drawn.lower[axis] > 2.0 * (box.upper[axis] - box.lower[axis])) return false;
+  }
+  return true;
+}
+
 // Whether it is worth a warning if no point is inside. Given points may be anywhere; of a few, all may miss the mesh.
 bool should_have_inside(const PointsCommand& command, const TriangleMesh& mesh) {
   constexpr std::uint64_t kMany = 1000;
-  return command.sample && !command.sample->bounds && points_off_surface(*command.sample) >= kMany &&
-         may_have_inside(bounding_box(mesh));
+  if (!command.sample || command.sample->bounds || points_around_mesh(*command.sample) < kMany) return false;
+  const Box box = bounding_box(mesh);
+  return may_have_inside(box) && is_close_to(box, command.sample->padding);
 }
 
 }  // namespace

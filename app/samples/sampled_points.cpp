@@ -59,11 +59,12 @@ bool draws_on_surface(const SampleRequest& request) {
                              [](const SampleGroup& group) { return std::holds_alternative<SurfaceSamples>(group); });
 }
 
-std::uint64_t points_off_surface(const SampleRequest& request) {
+std::uint64_t points_around_mesh(const SampleRequest& request) {
+  constexpr double kNear = 0.25;  // diagonals
   std::uint64_t points = 0;
   for (const SampleGroup& group : request.groups) {
-    if (!std::holds_alternative<SurfaceSamples>(group))
-      points += std::visit([](const auto& g) { return g.count; }, group);
+    if (const auto* uniform = std::get_if<UniformSamples>(&group)) points += uniform->count;
+    if (const auto* near = std::get_if<NearSamples>(&group); near && near->sigma <= kNear) points += near->count;
   }
   return points;
 }

@@ -21,7 +21,7 @@ namespace raycone {
 // Whether some of the points lie on the surface, so that they have normals and faces.
 [[nodiscard]] bool draws_on_surface(const SampleRequest& request);
 
-// How many lie elsewhere: in the box, or near the surface.
-[[nodiscard]] std::uint64_t points_off_surface(const SampleRequest& request);
+// How many lie elsewhere: in the box, or near the surface, by up to a quarter of the mesh's diagonal as a rule.
+[[nodiscard]] std::uint64_t points_around_mesh(const SampleRequest& request);
 
 }  // namespace raycone

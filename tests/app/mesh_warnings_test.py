@@ -125,7 +125,9 @@ def check_empty(directory):
     for options, expected in ((["uniform=900,near=100:0.1"], ["reversed", "empty"]),
                               (["near=1000:0.1", "--field", "sdf"], ["reversed", "empty"]),
                               (["uniform=900,near=100:0.1", "--strict", "--orient", "flip"], []),
-                              (["uniform=999,surface=999"], ["reversed"]),
+                              (["uniform=999,surface=999,near=999:0.3"], ["reversed"]),
+                              (["uniform=1000", "--padding", "40%"], ["reversed", "empty"]),
+                              (["uniform=1000", "--padding", "60%"], ["reversed"]),
                               (["uniform=1000", "--bounds", "5,5,5,6,6,6"], ["reversed"]),
                               (["uniform=1000", "--field", "winding"], ["reversed"]),
                               (["surface=1000"], ["reversed"])):
